@@ -33,7 +33,7 @@ pub use report::{
     NamedEffect, NuisanceParameter, Provenance, ResidualPlot,
 };
 pub use select::{
-    ChannelResidual, HeldOutGain, LearnableResidual, ResidualNoiseTest, SplitHalfAgreement,
+    ChannelResidual, HeldOutGain, LearnableResidual, RegimeAgreement, ResidualNoiseTest,
 };
 
 use bundle::file::BundleKind;

@@ -1,6 +1,6 @@
 //! The report as data.
 
-use crate::select::{ChannelResidual, HeldOutGain, ResidualNoiseTest, SplitHalfAgreement};
+use crate::select::{ChannelResidual, HeldOutGain, RegimeAgreement, ResidualNoiseTest};
 use dwell_scene::LawSpec;
 use serde::Serialize;
 use std::collections::BTreeMap;
@@ -202,7 +202,7 @@ pub struct CalibrationReport {
     /// And after.
     pub remainder_after: ResidualNoiseTest,
     /// The agreement of the cause's size where it is weak and where it is strong; `null` where that was not tested.
-    pub agreement: Option<SplitHalfAgreement>,
+    pub agreement: Option<RegimeAgreement>,
     /// All causes that were tried.
     pub candidates: Vec<CandidateCause>,
     /// Nuisances that all episodes share.

@@ -13,7 +13,7 @@ const ALLOWED_SHARE: f64 = 0.05;
 
 /// The first parameter of a cause, fitted apart in the episodes that feel it least and most.
 #[derive(Clone, Debug, PartialEq, Serialize)]
-pub struct SplitHalfAgreement {
+pub struct RegimeAgreement {
     /// Its fit in the half of the episodes that feels it least.
     pub weak: f64,
     /// Its fit in the half that feels it most.
@@ -22,7 +22,7 @@ pub struct SplitHalfAgreement {
     pub z: f64,
 }
 
-impl SplitHalfAgreement {
+impl RegimeAgreement {
     /// Returns whether the two differ by more than chance and the precision of masses and sizes allow.
     pub(crate) fn is_refuting(&self) -> bool {
         let size = self.weak.abs().max(self.strong.abs());
@@ -35,7 +35,7 @@ pub(super) fn agreement(
     all: &CauseComparer<'_>,
     judged: &ScoredModel,
     cause: usize,
-) -> Result<Option<SplitHalfAgreement>, CalibrationError> {
+) -> Result<Option<RegimeAgreement>, CalibrationError> {
     if all.experiment.residual_structure() != ResidualStructure::OverTime
         || all.split.train.len() < 6
     {
@@ -80,7 +80,7 @@ pub(super) fn agreement(
     } else {
         0.0
     };
-    Ok(Some(SplitHalfAgreement {
+    Ok(Some(RegimeAgreement {
         weak: weak.value,
         strong: strong.value,
         z,

@@ -12,7 +12,7 @@ mod screen;
 mod split;
 mod verdict;
 
-pub use agreement::SplitHalfAgreement;
+pub use agreement::RegimeAgreement;
 pub use gain::HeldOutGain;
 pub use learnable::LearnableResidual;
 pub use residual::{ChannelResidual, ResidualNoiseTest};

@@ -1,6 +1,6 @@
 //! Why nothing is named, in words.
 
-use super::agreement::SplitHalfAgreement;
+use super::agreement::RegimeAgreement;
 use super::compare::{CauseComparer, ScoredModel};
 use super::residual::ResidualNoiseTest;
 use super::verdict::SingleCause;
@@ -83,7 +83,7 @@ pub(super) fn structure_reason(
 pub(super) fn disagreement_reason(
     all: &CauseComparer<'_>,
     cause: usize,
-    found: &SplitHalfAgreement,
+    found: &RegimeAgreement,
 ) -> String {
     format!(
         "{} fits best, but it would have to be {} where it acts weakly and {} where it acts strongly, {:.1} standard \

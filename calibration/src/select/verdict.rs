@@ -2,7 +2,7 @@
 
 mod extension;
 
-use super::agreement::{SplitHalfAgreement, agreement};
+use super::agreement::{RegimeAgreement, agreement};
 use super::compare::{CauseComparer, Estimate, ModelAdvantage, ScoredModel, estimates};
 use super::gain::HeldOutGain;
 use super::learnable::LearnableResidual;
@@ -46,7 +46,7 @@ pub(crate) struct Findings {
     pub(crate) advantage_over_base: Option<ModelAdvantage>,
     pub(crate) remainder_before: ResidualNoiseTest,
     pub(crate) remainder_after: ResidualNoiseTest,
-    pub(crate) agreement: Option<SplitHalfAgreement>,
+    pub(crate) agreement: Option<RegimeAgreement>,
     pub(crate) decision: Decision,
     /// False where the search was ended early.
     pub(crate) is_finished: bool,

@@ -32,20 +32,20 @@ const ENOUGH: usize = 14;
 /// Length from which on a ray counts as free, m.
 const OPEN_M: f32 = 0.1;
 const TURNS_A_LOOK: f32 = 0.618_034;
-/// Distance of the neighbours whose least openness is that of a place, m: on a surface rounding decides on which side a point is.
+/// Distance of the neighbours whose least free-path score is that of a place, m: on a surface rounding decides on which side a point is.
 const GRAZE_M: f32 = 1e-3;
 
-/// Returns the openness at `place` and around it.
-fn min_openness_around(rays: &RayScene, place: Vec3) -> usize {
-    let open = openness_at(rays, place);
+/// Returns the least free-path score at `place` and around it.
+fn min_free_path_score_around(rays: &RayScene, place: Vec3) -> usize {
+    let open = free_path_score_at(rays, place);
     if open < ENOUGH {
         return open;
     }
-    let beside = SEARCH_DIRECTIONS.map(|way| openness_at(rays, place + way * GRAZE_M));
+    let beside = SEARCH_DIRECTIONS.map(|way| free_path_score_at(rays, place + way * GRAZE_M));
     beside.into_iter().fold(open, usize::min)
 }
 
-fn openness_at(rays: &RayScene, place: Vec3) -> usize {
+fn free_path_score_at(rays: &RayScene, place: Vec3) -> usize {
     let look = |k: usize| {
         let y = 1.0 - (2 * k + 1) as f32 / PROBE_RAYS as f32;
         let (s, c) = sin_cos(TAU * TURNS_A_LOOK * k as f32);
@@ -71,13 +71,13 @@ fn openness_at(rays: &RayScene, place: Vec3) -> usize {
 
 /// The place in the air at or beside `place` from which a sound there is heard: the first that is open enough, else the most open.
 pub(crate) fn nearest_open_air_point(rays: &RayScene, place: Vec3) -> Vec3 {
-    let mut best = (min_openness_around(rays, place), place);
+    let mut best = (min_free_path_score_around(rays, place), place);
     for beside in STEPS_M.map(|step_m| SEARCH_DIRECTIONS.map(|way| place + way * step_m)) {
         for place in beside {
             if best.0 >= ENOUGH {
                 return best.1;
             }
-            let open = min_openness_around(rays, place);
+            let open = min_free_path_score_around(rays, place);
             if open > best.0 {
                 best = (open, place);
             }
@@ -137,11 +137,11 @@ mod tests {
             for (emitter, place) in house.emitters.iter().zip(emission_points(&house)) {
                 let pose = house.parts[emitter.part].world_from_part;
                 let told = pose.transform_point(emitter.position);
-                within += usize::from(min_openness_around(&rays, told) < ENOUGH);
+                within += usize::from(min_free_path_score_around(&rays, told) < ENOUGH);
                 let place = pose.transform_point(place);
                 let object = &house.objects[emitter.object].name;
                 assert!(
-                    min_openness_around(&rays, place) >= ENOUGH,
+                    min_free_path_score_around(&rays, place) >= ENOUGH,
                     "{name}: {object}"
                 );
                 assert!(place.distance(told) < 0.2, "{name}: {object}");

@@ -19,7 +19,7 @@ pub(crate) fn all_slice() -> &'static [&'static LawInfo] {
 
 /// The numbers of a law that is given by its name alone, where these need no choice.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub struct LawPreset {
+pub struct LawDefaultValues {
     /// The law's id.
     pub id: &'static str,
     /// Values by parameter name; the others have their defaults.
@@ -29,33 +29,33 @@ pub struct LawPreset {
 }
 
 /// The laws that have usual numbers. The others need some: a wind has no usual direction.
-pub const DEFAULT_VALUES: &[LawPreset] = &[
-    LawPreset {
+pub const DEFAULT_VALUES: &[LawDefaultValues] = &[
+    LawDefaultValues {
         id: "drag",
         params: &[("c_d", 0.47)],
         about: "that of a sphere at Reynolds numbers of 1e4 to 1e5: S. F. Hoerner, Fluid-Dynamic Drag (1965), chapter 3",
     },
-    LawPreset {
+    LawDefaultValues {
         id: "buoyancy",
         params: &[("fluid_density_kg_m3", 1.204)],
         about: "dry air at 20 degrees Celsius and 101325 Pa",
     },
-    LawPreset {
+    LawDefaultValues {
         id: "no_air_absorption",
         params: &[("missing", 1.0)],
         about: "all of it is missing",
     },
-    LawPreset {
+    LawDefaultValues {
         id: "vignetting",
         params: &[("strength", 1.0)],
         about: "the law of the fourth power",
     },
-    LawPreset {
+    LawDefaultValues {
         id: "redwood_depth",
         params: &[("strength", 1.0)],
         about: "the published noise",
     },
-    LawPreset {
+    LawDefaultValues {
         id: "kinect_depth",
         params: &[("axial", 1.0), ("lateral", 1.0)],
         about: "the published noise",

@@ -4,7 +4,7 @@ use super::request::Target;
 use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
 use crate::articulation::{CLOSED_THRESHOLD, OPEN_THRESHOLD};
-use crate::joints::HandDrive;
+use crate::joints::ManualJointDrive;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, JointId, ObjectId, State};
 
@@ -96,7 +96,7 @@ impl ActionContext<'_> {
                 .joint_parameters(&self.dynamics.model.house, *id)
                 .clamp(goal);
             state.joint_command[*id] = JointCommand::Position(goal);
-            let drive = HandDrive::new(goal, state.joint_position[*id], Some(actor.id));
+            let drive = ManualJointDrive::new(goal, state.joint_position[*id], Some(actor.id));
             self.articulation.hand_drives.insert(*id, drive);
         }
     }

@@ -4,7 +4,7 @@ use super::hand_action::{HandAction, HandContext};
 use super::request::Target;
 use super::stable_pose::StablePose;
 use super::{ActionContext, ActionResult, Actor};
-use crate::dynamics::SupportFilter;
+use crate::dynamics::SupportSurfaceFilter;
 use crate::hands::HeldObject;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::bvh::{Ray, RayMask};
@@ -159,13 +159,13 @@ impl ActionContext<'_> {
                 return refuse(OutcomeCode::NoSpace, sentence.to_owned(), Some(object));
             }
             Entity::Object(object) => (
-                SupportFilter::Object(object),
+                SupportSurfaceFilter::Object(object),
                 Some(object),
                 self.dynamics.name_of(object),
             ),
             Entity::Structure(id) => {
                 let name = self.surface_name(SurfaceOwner::Structure(id));
-                (SupportFilter::Structure, None, name)
+                (SupportSurfaceFilter::Structure, None, name)
             }
             _ => {
                 let sentence = "Nothing can be put on somebody. Choose a surface.".to_owned();
@@ -240,10 +240,10 @@ impl ActionContext<'_> {
                 continue;
             }
             let (ground, on) = match surface.owner {
-                SurfaceOwner::Structure(_) => (SupportFilter::Structure, None),
+                SurfaceOwner::Structure(_) => (SupportSurfaceFilter::Structure, None),
                 SurfaceOwner::Part(part) => {
                     let object = house.parts[part].object;
-                    (SupportFilter::Object(object), Some(object))
+                    (SupportSurfaceFilter::Object(object), Some(object))
                 }
             };
             let foot = ray.point_at(hit.distance_m) + Vec3::Y * RING_M;
@@ -306,9 +306,12 @@ impl ActionContext<'_> {
             let z = low.z + (high.z - low.z) * share(k / GRID);
             let from = Vec3::new(x, all.max.y + ABOVE_M, z);
             let down_m = all.size().y + 2.0 * ABOVE_M;
-            let levels =
-                self.dynamics
-                    .support_heights(body, SupportFilter::Object(object), from, down_m);
+            let levels = self.dynamics.support_heights(
+                body,
+                SupportSurfaceFilter::Object(object),
+                from,
+                down_m,
+            );
             feet.extend(levels.into_iter().map(|height| Vec3::new(x, height, z)));
         }
         feet.retain(|foot| (*foot - eye).length() <= reach_m);
@@ -317,7 +320,12 @@ impl ActionContext<'_> {
     }
 
     /// Returns points on rings around a point, the nearest first.
-    fn ring_points_around(&self, body: usize, ground: SupportFilter, point: Vec3) -> Vec<Vec3> {
+    fn ring_points_around(
+        &self,
+        body: usize,
+        ground: SupportSurfaceFilter,
+        point: Vec3,
+    ) -> Vec<Vec3> {
         let mut feet = Vec::new();
         for ring in 0..RINGS {
             let count = if ring == 0 { 1 } else { 6 * ring };

@@ -3,7 +3,7 @@
 use super::hand_action::{HandAction, HandContext};
 use super::stable_pose::StablePose;
 use super::{ActionContext, ActionResult, Actor};
-use crate::dynamics::SupportFilter;
+use crate::dynamics::SupportSurfaceFilter;
 use crate::hands::HeldObject;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
 use dwell_scene::State;
@@ -77,7 +77,7 @@ impl ActionContext<'_> {
         let body = grip.body as usize;
         let levels =
             self.dynamics
-                .support_heights(body, SupportFilter::Any, above, 2.0 * SURFACE_M);
+                .support_heights(body, SupportSurfaceFilter::Any, above, 2.0 * SURFACE_M);
         let Some(height) = levels
             .into_iter()
             .min_by(|a, b| (a - point.y).abs().total_cmp(&(b - point.y).abs()))

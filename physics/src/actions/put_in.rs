@@ -7,7 +7,7 @@ use super::target::ResolvedTarget;
 use super::{ActionContext, ActionResult, Actor};
 use crate::contact::ContactEntity;
 use crate::convert::to_rapier;
-use crate::dynamics::SupportFilter;
+use crate::dynamics::SupportSurfaceFilter;
 use crate::hands::HeldObject;
 use crate::model::BodyDefinition;
 use crate::outcome::{ActionOutcome, OutcomeCode, done, fail};
@@ -208,9 +208,12 @@ impl ActionContext<'_> {
                 let x = inside.min.x + share(k % GRID, size.x, room.x);
                 let z = inside.min.z + share(k / GRID, size.z, room.z);
                 let top = world_from_part.transform_point(Vec3::new(x, inside.max.y, z));
-                let levels =
-                    self.dynamics
-                        .support_heights(body, SupportFilter::Any, top, room.y + 0.02);
+                let levels = self.dynamics.support_heights(
+                    body,
+                    SupportSurfaceFilter::Any,
+                    top,
+                    room.y + 0.02,
+                );
                 for height in levels {
                     let foot = top.with_y(height);
                     let middle = foot + Vec3::Y * (0.5 * stance.size().y);

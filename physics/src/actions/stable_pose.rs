@@ -1,7 +1,7 @@
 //! Stable poses of an object, and the support that they need.
 
 use super::ActionContext;
-use crate::dynamics::{HolderCollision, SupportFilter};
+use crate::dynamics::{HolderCollision, SupportSurfaceFilter};
 use crate::model::BodyDefinition;
 use glam::{Quat, Vec3};
 use rapier3d::math::Pose as RapierPose;
@@ -193,7 +193,7 @@ impl ActionContext<'_> {
             let above = pose.translation + point + Vec3::Y * GROUND_PROBE_M;
             let bottom = foot.y + (point.y - stance.min.y);
             self.dynamics
-                .support_heights(body, SupportFilter::Any, above, 2.0 * GROUND_PROBE_M)
+                .support_heights(body, SupportSurfaceFilter::Any, above, 2.0 * GROUND_PROBE_M)
                 .iter()
                 .any(|height| (height - bottom).abs() <= MAX_UNEVENNESS_M)
         });

@@ -3,7 +3,7 @@
 use super::WorldJoints;
 use crate::contact::{ContactEntity, entry_index};
 use crate::dynamics::Dynamics;
-use crate::joints::{self, DriveProgress, HandDrive, PhysicsJoint, motor_command};
+use crate::joints::{self, DriveProgress, ManualJointDrive, PhysicsJoint, motor_command};
 use crate::outcome::{DelayedOutcome, OutcomeCode, done, fail};
 use dwell_scene::{JointCommand, State};
 
@@ -41,7 +41,7 @@ impl WorldJoints {
                 let drive = self.hand_drives.get(&joint.id);
                 if drive.is_none_or(|drive| drive.goal != goal) {
                     self.hand_drives
-                        .insert(joint.id, HandDrive::new(goal, now.0, None));
+                        .insert(joint.id, ManualJointDrive::new(goal, now.0, None));
                 }
                 if (goal - articulation.closed).abs() > joints::closed_tolerance(joint.kind) {
                     let body = dynamics.bodies[child];

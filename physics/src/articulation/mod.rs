@@ -10,7 +10,7 @@ use crate::body::{self, BodyStatus};
 use crate::convert::{from_rapier, to_rapier};
 use crate::dynamics::Dynamics;
 use crate::joints::{
-    self, HandDrives, JointActuation, JointKinematics, KinematicTree, PhysicsJoint,
+    self, JointActuation, JointKinematics, KinematicTree, ManualJointDrives, PhysicsJoint,
 };
 use dwell_scene::{JointId, State};
 
@@ -25,7 +25,7 @@ pub(crate) struct WorldJoints {
     pub(crate) joint_coordinates: Vec<JointKinematics>,
     /// The actuation of each joint during this control step. Shape (joint,).
     pub(crate) actuations: Vec<Option<JointActuation>>,
-    pub(crate) hand_drives: HandDrives,
+    pub(crate) hand_drives: ManualJointDrives,
 }
 
 impl WorldJoints {

@@ -28,7 +28,7 @@ pub(crate) enum HolderCollision {
 
 /// The surfaces that an object may be put on.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
-pub(crate) enum SupportFilter {
+pub(crate) enum SupportSurfaceFilter {
     Object(ObjectId),
     Structure,
     Any,
@@ -143,7 +143,7 @@ impl Dynamics {
     pub(crate) fn support_heights(
         &self,
         body: usize,
-        ground: SupportFilter,
+        ground: SupportSurfaceFilter,
         from: Vec3,
         down_m: f32,
     ) -> Vec<f32> {
@@ -169,12 +169,12 @@ impl Dynamics {
                 .and_then(|collider| self.entry_of(collider).contact_entity);
             let owner = match owner {
                 Some(ContactEntity::Part(part)) => {
-                    SupportFilter::Object(self.model.house.parts[part].object)
+                    SupportSurfaceFilter::Object(self.model.house.parts[part].object)
                 }
-                Some(ContactEntity::Structure(_)) => SupportFilter::Structure,
+                Some(ContactEntity::Structure(_)) => SupportSurfaceFilter::Structure,
                 _ => continue,
             };
-            let wanted = ground == SupportFilter::Any || owner == ground;
+            let wanted = ground == SupportSurfaceFilter::Any || owner == ground;
             if wanted && hit.normal.y > 0.9 && hit.time_of_impact > 0.0 {
                 levels.push(height);
             }

@@ -8,7 +8,7 @@ pub(crate) use assembly::{
     AssembledWorld, BodyMasses, assemble, density, invalidate_contacts, set_contact_properties,
     update_collider_properties,
 };
-pub(crate) use clearance::{HolderCollision, SupportFilter};
+pub(crate) use clearance::{HolderCollision, SupportSurfaceFilter};
 
 use crate::body::{self, BodyHandle, BodyStatus};
 use crate::config::ResolvedConfig;

@@ -23,7 +23,7 @@ const STALL_TIMEOUT_S: f32 = 0.4;
 
 /// A hand that moves a joint.
 #[derive(Clone, Copy, Debug, PartialEq, Serialize, Deserialize)]
-pub(crate) struct HandDrive {
+pub(crate) struct ManualJointDrive {
     /// Goal position of the joint.
     pub(crate) goal: f32,
     /// Present position of the hand.
@@ -35,7 +35,7 @@ pub(crate) struct HandDrive {
 }
 
 /// All hands on joints.
-pub(crate) type HandDrives = BTreeMap<JointId, HandDrive>;
+pub(crate) type ManualJointDrives = BTreeMap<JointId, ManualJointDrive>;
 
 /// The state of a drive after a control step.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -52,7 +52,7 @@ fn speed_and_lead(kind: JointKind) -> (f32, f32) {
     }
 }
 
-impl HandDrive {
+impl ManualJointDrive {
     pub(crate) fn new(goal: f32, position: f32, agent: Option<AgentId>) -> Self {
         Self {
             goal,
@@ -114,7 +114,7 @@ pub(crate) fn advance(
     kind: JointKind,
     values: &JointParameters,
     command: JointCommand,
-    hand: Option<&mut HandDrive>,
+    hand: Option<&mut ManualJointDrive>,
     (position, velocity): (f32, f32),
     (step_s, hand_effort): (f32, f32),
 ) -> (Option<JointActuation>, Option<DriveProgress>) {

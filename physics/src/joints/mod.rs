@@ -23,7 +23,7 @@ mod tree;
 mod tree_dynamics;
 mod tree_step;
 
-pub(crate) use drive::{DriveProgress, HandDrive, HandDrives, advance};
+pub(crate) use drive::{DriveProgress, ManualJointDrive, ManualJointDrives, advance};
 pub(crate) use effort_term::{ActuationGain, JointActuation};
 pub(crate) use efforts::{
     JointStepInputs, TreePrediction, apply_efforts, clear_efforts, correct_tree_positions,

@@ -20,7 +20,7 @@ use crate::dynamics::{AssembledWorld, BodyMasses, assemble};
 use crate::engine::{RapierWorld, SleepingIslandCache};
 use crate::error::PhysicsError;
 use crate::hands::HeldObject;
-use crate::joints::{self, HandDrives, JointActuation};
+use crate::joints::{self, JointActuation, ManualJointDrives};
 use crate::laws::{self, LawSet};
 use crate::limits::PairLoad;
 use dwell_scene::columnar;
@@ -48,7 +48,7 @@ struct NonRapierState {
     excluded: CollisionExclusions,
     grips: Vec<HeldObject>,
     released_overlapping: Vec<(u32, AgentId)>,
-    drives: HandDrives,
+    drives: ManualJointDrives,
     ongoing_pushes: Vec<OngoingPush>,
     pulls: Vec<Option<JointActuation>>,
     contact_tracker: ContactTracker,

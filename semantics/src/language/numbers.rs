@@ -58,7 +58,11 @@ pub(super) fn equative(one: &Tree, other: &Tree) -> Option<Clause> {
 }
 
 /// The clauses of "two or three chairs".
-pub(super) fn exact_count_clauses(one: &Tree, other: &Tree, what: &Tree) -> Option<Vec<Clause>> {
+pub(super) fn alternative_count_clauses(
+    one: &Tree,
+    other: &Tree,
+    what: &Tree,
+) -> Option<Vec<Clause>> {
     let exactly = |count: &Tree| {
         let what = nominal(what)?;
         let what = what.with_quantifier(Quantifier::Exactly(number(count)?));

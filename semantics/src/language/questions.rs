@@ -40,7 +40,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             numbers::comparative_by_modifier(what, other, one)?,
         ]),
         ("which_count", [one, other, what]) => {
-            Question::Alternatives(numbers::exact_count_clauses(one, other, what)?)
+            Question::Alternatives(numbers::alternative_count_clauses(one, other, what)?)
         }
         ("which_verb", [kind, verb, object]) => which(
             Some(nominal(kind)?),

@@ -14,7 +14,7 @@ use super::{
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
 use dwell_scene::law::LawRegime;
-use recording::{DriveRecordings, NominalBase};
+use recording::{DriveRecordings, NominalWheelGeometry};
 use rig::DriveRig;
 
 /// Duration of a window, s.
@@ -32,7 +32,7 @@ pub(crate) struct DriveExperiment {
     channels: Vec<ChannelInfo>,
     causes: Vec<Cause>,
     own: Vec<FitParameter>,
-    base: NominalBase,
+    base: NominalWheelGeometry,
     rate_hz: f64,
     /// Rotations of the wheels from sample to sample of each window, rad. Shape (window, sample - 1).
     turned_rad: Vec<Vec<[f64; 2]>>,
@@ -257,7 +257,7 @@ mod tests {
             channels: Vec::new(),
             causes: vec![MeasurementFault::LengthScale.cause()],
             own: vec![FitParameter::nuisance("start", "m", 1e-4); 3],
-            base: NominalBase {
+            base: NominalWheelGeometry {
                 wheel_radius_m: 0.05,
                 wheel_base_m: 0.2,
             },

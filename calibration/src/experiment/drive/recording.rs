@@ -7,7 +7,7 @@ use std::f64::consts::{PI, TAU};
 
 /// The base as it is believed to be.
 #[derive(Clone, Copy, Debug, PartialEq)]
-pub(super) struct NominalBase {
+pub(super) struct NominalWheelGeometry {
     /// Radius of both wheels, m.
     pub(super) wheel_radius_m: f64,
     /// Distance between the points where they touch the floor, m.
@@ -16,7 +16,7 @@ pub(super) struct NominalBase {
 
 /// Drives of one robot.
 pub(super) struct DriveRecordings {
-    pub(super) base: NominalBase,
+    pub(super) base: NominalWheelGeometry,
     /// Samples per second, Hz.
     pub(super) rate_hz: f64,
     /// The episodes, in the order of the file.
@@ -56,7 +56,7 @@ impl DriveRecordings {
             }
         };
         Ok(Self {
-            base: NominalBase {
+            base: NominalWheelGeometry {
                 wheel_radius_m: base.wheel_radius_m,
                 wheel_base_m: base.wheel_base_m,
             },

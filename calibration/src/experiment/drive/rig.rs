@@ -1,6 +1,6 @@
 //! The simulation of a robot on an empty floor.
 
-use super::recording::{NominalBase, wrap_angle};
+use super::recording::{NominalWheelGeometry, wrap_angle};
 use crate::error::CalibrationError;
 use dwell_physics::{AgentControl, PhysicsConfig, PhysicsWorld};
 use dwell_scene::{
@@ -28,7 +28,7 @@ pub(super) struct DriveRig {
 impl DriveRig {
     /// The robot with `laws`, in a world with a step between two samples: the base follows exact arcs.
     pub(super) fn new(
-        base: &NominalBase,
+        base: &NominalWheelGeometry,
         rate_hz: f64,
         laws: Vec<LawSpec>,
     ) -> Result<Self, CalibrationError> {

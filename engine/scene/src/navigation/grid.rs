@@ -3,7 +3,7 @@
 use super::config::{DoorPolicy, NavConfig, range_error};
 use super::heightfield::{HeightSpan, merge_spans};
 use super::layers::{DOORWAY, FREE, INDOORS, NO_CELL, ON_FLOOR, SurfaceLayers, column_centre};
-use super::obstacles::{Obstacles, is_passable, openness};
+use super::obstacles::{Obstacles, is_passable, passage_openness};
 use super::static_grid::{MAX_CELLS, StaticNavGrid, columns_around, is_standing_blocked};
 use crate::error::SceneError;
 use crate::house::House;
@@ -135,7 +135,7 @@ impl NavGrid {
         state: &State,
     ) -> super::obstacles::ObstacleChanges {
         for (k, open) in self.openness.iter_mut().enumerate() {
-            *open = openness(house, state, &self.ground, k);
+            *open = passage_openness(house, state, &self.ground, k);
         }
         self.obstacles
             .update_poses(house, state, &self.ground, &self.config)

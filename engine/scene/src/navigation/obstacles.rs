@@ -113,7 +113,7 @@ impl Obstacles {
 }
 
 /// Returns the openness of a passage's door in `state`, 0 to 1.
-pub(super) fn openness(
+pub(super) fn passage_openness(
     house: &House,
     state: &State,
     ground: &StaticNavGrid,
@@ -140,7 +140,7 @@ fn unheld_part_transform(
         return None;
     }
     if let Some(passage) = ground.door_of_part[part] {
-        let open = is_passable(openness(house, state, ground, passage as usize));
+        let open = is_passable(passage_openness(house, state, ground, passage as usize));
         let opened = match config.doors {
             DoorPolicy::AsTheyStand => false,
             DoorPolicy::Open => true,

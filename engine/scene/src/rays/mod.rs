@@ -124,29 +124,6 @@ impl RayScene {
         self.bvh().occluded(ray, mask)
     }
 
-    /// As [`Self::closest`] for rays with a common origin, faster when their directions are similar.
-    ///
-    /// `directions`: unit length, one row for each of x, y, z. Shape (3, 16). A zero direction hits nothing.
-    pub fn closest_from_origin(
-        &self,
-        origin: Vec3,
-        directions: &[[f32; PACKET_SIZE]; 3],
-        near_m: f32,
-        far_m: f32,
-        mask: RayMask,
-    ) -> [Option<Hit>; PACKET_SIZE] {
-        let bvh = self.bvh();
-        let rays = RayPacket {
-            direction: *directions,
-            near_m: [near_m; PACKET_SIZE],
-            far_m: [far_m; PACKET_SIZE],
-            origin,
-        };
-        let mut hits = PacketHits::new();
-        bvh.closest_packet(&rays, mask, None, &mut hits);
-        std::array::from_fn(|k| bvh.packet_hit(&rays, &hits, k))
-    }
-
     /// As [`Self::closest_excluding`] for all rays of a packet, much faster when their directions are similar.
     ///
     /// `hidden`: [`EntityId::VOID`] hides nothing.
