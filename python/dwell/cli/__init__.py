@@ -27,6 +27,7 @@ COMMANDS = {
     "record": "data sets: a person at a table points, shows and speaks",
     "measure": "tables of measurements into a bundle that calibrate reads",
     "calibrate": "measured data against the simulation: what is missing, and what it gains",
+    "challenge": "cases with a hidden cause for methods of calibration, and their scores",
     "bench": "throughput of a stage",
 }
 

@@ -1,0 +1,114 @@
+"""``dwell challenge``: cases with a hidden cause for methods of calibration, and their scores."""
+
+from __future__ import annotations
+
+import argparse
+import functools
+import json
+from typing import Any
+
+from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
+from dwell.files import atomic_write
+
+
+def configure(parser: argparse.ArgumentParser) -> None:
+    """Adds the commands."""
+    what = parser.add_subparsers(dest="what", metavar="make|run|score", required=True)
+    make = what.add_parser("make", help="bundles with a hidden cause, and apart their answers")
+    make.add_argument("--cases", type=count_from_1, default=80, metavar="N", help="how many (80)")
+    make.add_argument("--seed", type=count, default=0, metavar="S", help="draws them (0)")
+    make.add_argument(
+        "--worlds", nargs="+", metavar="WORLD", help="of flights; default: all there are"
+    )
+    make.add_argument("--shard", type=shard, default=(0, 1), metavar="I/N", help="a part of them")
+    make.add_argument("--out", type=path, required=True, metavar="DIR", help="for NAME.measured")
+    make.add_argument(
+        "--answers", type=path, metavar="FILE.jsonl", help="what is hidden; not where bundles are"
+    )
+    make.set_defaults(do=_make)
+    run = what.add_parser("run", help="verdicts of dwell calibrate; goes on where it was stopped")
+    run.add_argument("bundles", type=path, metavar="DIR", help="the folder of bundles")
+    run.add_argument("--shard", type=shard, default=(0, 1), metavar="I/N", help="a part of them")
+    run.add_argument(
+        "--out", type=path, required=True, metavar="FILE.jsonl", help="verdicts; of each shard one"
+    )
+    run.set_defaults(do=_run)
+    score = what.add_parser("score", help="scores of verdicts, with 95 % intervals")
+    score.add_argument("verdicts", type=path, nargs="+", metavar="VERDICTS.jsonl")
+    score.add_argument("--answers", type=path, nargs="+", required=True, metavar="FILE.jsonl")
+    score.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    score.set_defaults(do=_score)
+
+
+def run(args: argparse.Namespace) -> int:
+    """Runs one of them."""
+    return int(args.do(args))
+
+
+def _make(args: argparse.Namespace) -> int:
+    from dwell import ConfigError
+    from dwell.challenge import ChallengeSettings, make
+
+    if args.answers and args.answers.resolve().is_relative_to(args.out.resolve()):
+        raise ConfigError(f"--answers is {args.answers}; expected a file outside of {args.out}")
+    chosen = {} if args.worlds is None else {"worlds": tuple(args.worlds)}
+    settings = ChallengeSettings(cases=args.cases, seed=args.seed, **chosen)
+    progress = ProgressBar()
+    answers, written = [], 0
+    for one, folder, is_new in make(args.out, settings, args.shard):
+        answers.append(json.dumps(one.answer()) + "\n")
+        written += is_new
+        progress((one.number + 1) / settings.cases, folder.name)
+    progress(1.0, "done")
+    if args.answers:
+        with atomic_write(args.answers) as draft:
+            draft.write_text("".join(answers), "utf-8")
+    print(f"{written} of {len(answers)} bundles written to {args.out}")
+    return 0
+
+
+def _run(args: argparse.Namespace) -> int:
+    from dwell.challenge import run as judge
+
+    names = len(list(args.bundles.glob("*.measured")))
+    which, shards = args.shard
+    expected = max(1, len(range(which, names, shards)))
+    progress = ProgressBar()
+    done = new = 0
+    for name, is_new in judge(args.bundles, args.out, shard=args.shard):
+        done, new = done + 1, new + is_new
+        progress(done / expected, name)
+    print(f"{new} of {done} bundles judged; verdicts in {args.out}")
+    return 0
+
+
+def _score(args: argparse.Namespace) -> int:
+    from dwell.challenge import score
+    from dwell.challenge.running import read_rows
+
+    answers = [row for file in args.answers for row in read_rows(file)]
+    verdicts = [row for file in args.verdicts for row in read_rows(file)]
+    found = score(answers, verdicts)
+    if args.json:
+        print_json(found)
+        return 0
+    print(f"{found['judged']} cases judged")
+    for name, value in found.items():
+        if isinstance(value, dict):
+            print(_line(name, value))
+    for name in ("mean_set_size", "median_error"):
+        if found[name] is not None:
+            print(f"{name:<26} {found[name]:.3f}")
+    for row in found["curve"]:
+        low, high = row["d_prime"]
+        print(_line(f"named right, d' {low:g} to {high:g}", row))
+    return 0
+
+
+def _line(name: str, value: dict[str, Any]) -> str:
+    told = functools.partial("{:5.1f} %".format)
+    if value["share"] is None:
+        return f"{name:<26} no cases"
+    low, high = (100.0 * end for end in value["interval"])
+    share = told(100.0 * value["share"])
+    return f"{name:<26} {share}  ({low:.1f} to {high:.1f})  {value['hits']} of {value['of']}"

@@ -1,0 +1,307 @@
+"""Hidden cases: the worlds against closed forms, d' against a fit, no trace of causes, scores."""
+
+from __future__ import annotations
+
+import dataclasses
+import json
+import os
+import subprocess
+from collections.abc import Callable
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+import pytest
+
+import dwell
+from dwell.challenge import Case, ChallengeSettings, calibrated_verdict, case, make, run, score
+from dwell.challenge.cases import STRATA, WORLDS, _kind_of
+from dwell.challenge.detection import Detector
+from dwell.challenge.running import read_rows
+from dwell.challenge.scores import wilson_interval
+from dwell.challenge.writing import bundle_of
+
+FLIGHTS = WORLDS["flights"]
+
+
+def throws(seed: int = 3) -> Any:  # noqa: ANN401
+    """Throws of a table-tennis ball."""
+    known = FLIGHTS.conditions(np.random.default_rng(seed))
+    return dataclasses.replace(known, mass_kg=0.0027, radius_m=0.02)
+
+
+def first_of(kind: str, seed: int = 0) -> Case:
+    number = next(k for k in range(100) if _kind_of(k) == kind)
+    return case(number, ChallengeSettings(cases=100, seed=seed))
+
+
+def test_linear_drag_and_tilt_follow_their_closed_forms() -> None:
+    known = throws()
+    rate, lean, scale = 0.3, 0.05, 1.02
+    seen = FLIGHTS.observe(
+        known,
+        known.starts,
+        {"viscous_damping": (rate,), "frame_tilt": (lean,), "length_scale": (scale,)},
+    )
+    t = np.arange(seen.shape[1])[None, :, None] / known.rate_hz
+    place, velocity = known.starts[:, None, :3], known.starts[:, None, 3:]
+    terminal = np.array([0.0, -9.80665 / rate, 0.0])
+    exact = place + terminal * t + (velocity - terminal) * (1.0 - np.exp(-rate * t)) / rate
+    x, y, z = np.moveaxis(exact, 2, 0)
+    leaning = np.stack(
+        [np.cos(lean) * x - np.sin(lean) * y, np.sin(lean) * x + np.cos(lean) * y, z], axis=2
+    )
+    assert np.abs(seen - scale * leaning).max() < 1e-9
+
+
+def test_quadratic_drag_loses_the_energy_that_its_force_takes() -> None:
+    known = throws(4)
+    c_d = 0.8
+    seen = FLIGHTS.observe(known, known.starts, {"drag": (c_d,)})
+    velocity = np.gradient(seen, 1.0 / known.rate_hz, axis=1)[:, 2:-2]
+    speed = np.linalg.norm(velocity, axis=2)
+    energy = 0.5 * speed**2 + 9.80665 * seen[:, 2:-2, 1]
+    power = np.gradient(energy, 1.0 / known.rate_hz, axis=1)[:, 1:-1]
+    area = np.pi * known.radius_m**2
+    expected = -0.5 * 1.2041 * c_d * area / known.mass_kg * speed[:, 1:-1] ** 3
+    assert np.abs(power - expected).max() < 0.02 * np.abs(expected).max()
+
+
+def test_d_prime_is_that_of_a_fit_of_parabolas() -> None:
+    """Unknown starts of flights without drag are all straight lines, which a fit takes away."""
+    known = throws()
+    noise_sd = 0.002
+    found = Detector(FLIGHTS, known, noise_sd).d_prime({"gravity": (9.9,)})
+    power = 0.0
+    for count in known.samples:
+        t = np.arange(count) / known.rate_hz
+        fall = -0.5 * (9.9 - 9.80665) * t**2
+        line = np.polynomial.Polynomial.fit(t, fall, 1)
+        power += float(((fall - line(t)) ** 2).sum())
+    assert found == pytest.approx(np.sqrt(power) / noise_sd, rel=1e-3)
+
+
+def test_strengths_have_the_d_prime_that_was_asked() -> None:
+    detector = Detector(FLIGHTS, throws(), 0.002)
+    drag = next(effect for effect in FLIGHTS.effects if effect.id == "drag")
+    strength = detector.strength(drag, 150.0, 1.0)
+    assert strength is not None
+    assert detector.d_prime({"drag": (strength,)}) == pytest.approx(150.0, rel=0.011)
+    assert detector.strength(drag, 1e7, 1.0) is None
+
+
+def test_flights_do_not_tell_gravity_from_scales() -> None:
+    detector = Detector(FLIGHTS, throws(), 0.0005)
+    by_id = {effect.id: effect for effect in FLIGHTS.effects}
+    hidden = {"gravity": (9.82,)}
+    for rival in ("length_scale", "clock_scale"):
+        assert detector.distance(hidden, by_id[rival]) < 0.5
+    for rival in ("frame_tilt", "magnus"):
+        assert detector.distance(hidden, by_id[rival]) > 5.0
+
+
+def test_kinds_have_their_shares() -> None:
+    counts = dict.fromkeys(STRATA, 0)
+    for k in range(800):
+        counts[_kind_of(k)] += 1
+    assert all(abs(counts[kind] - share) <= 2 for kind, share in STRATA.items()), counts
+
+
+def test_a_case_is_the_same_whatever_their_number_and_no_other(tmp_path: Path) -> None:
+    few, many = ChallengeSettings(cases=3, seed=4), ChallengeSettings(cases=90, seed=4)
+    assert case(2, few).answer() == case(2, many).answer()
+    assert case(2, few).name != case(2, dataclasses.replace(few, seed=5)).name
+    made = [folder for _, folder, is_new in make(tmp_path, few) if is_new]
+    texts = {path: path.read_bytes() for folder in made for path in folder.iterdir()}
+    assert len(texts) == 9
+    # What is there stays; what is gone is made again to the same bytes.
+    for path in made[1].iterdir():
+        path.unlink()
+    made[1].rmdir()
+    assert [is_new for *_, is_new in make(tmp_path, few)] == [False, True, False]
+    assert {path: path.read_bytes() for folder in made for path in folder.iterdir()} == texts
+
+
+@pytest.mark.parametrize("kind", ["one", "two", "outside", "fault"])
+def test_a_bundle_has_no_trace_of_its_cause(tmp_path: Path, kind: str) -> None:
+    """But for numbers that were measured, it is the bundle of the same case without a cause."""
+    from dwell.challenge.writing import _write
+
+    hidden = first_of(kind, seed=8)
+    rows = {}
+    for name, one in {"hidden": hidden, "plain": dataclasses.replace(hidden, values={})}.items():
+        folder = tmp_path / name
+        folder.mkdir()
+        _write(folder, one, seed=8)
+        table = [
+            row.split(",") for row in (folder / "trajectory.csv").read_text("utf-8").splitlines()
+        ]
+        places = [row for row in table if row[3] in "xyz"]
+        # Measured spins and all that says which, when and where are the same.
+        rows[name] = [
+            (folder / "manifest.json").read_bytes(),
+            (folder / "episodes.csv").read_bytes(),
+            [row[:4] for row in table],
+            [row for row in table if row[3].startswith("w")],
+            [os.stat(folder / file).st_mtime for file in sorted(os.listdir(folder))],
+        ]
+        rows[f"{name} values"] = [row[4] for row in places]
+    assert rows["hidden"] == rows["plain"]
+    assert rows["hidden values"] != rows["plain values"]
+    words = (tmp_path / "hidden/manifest.json").read_text("utf-8")
+    assert not any(effect.id in words for effect in FLIGHTS.effects)
+
+
+def perfect(answer: dict[str, Any]) -> dict[str, Any]:
+    """The verdict of who knows."""
+    ids = [one["id"] for one in answer["hidden"]]
+    if answer["kind"] == "nothing":
+        return {"kind": "nothing", "sets": [], "parameters": {}}
+    if answer["kind"] == "outside":
+        return {"kind": "unexplained", "sets": [], "parameters": {}}
+    alike = [[id] for id, value in answer["rivals"].items() if value < 1.0 and len(ids) == 1]
+    parameters = {
+        one["id"]: {name: [v, v - abs(v), v + abs(v)] for name, v in one["parameters"].items()}
+        for one in answer["hidden"]
+    }
+    kind = "one_of" if alike else "named"
+    return {"kind": kind, "sets": [ids, *alike], "parameters": {} if alike else parameters}
+
+
+def answer(number: int, kind: str, rivals: dict[str, float], **hidden: float) -> dict[str, Any]:
+    """An answer in which each effect has a first parameter of 0.5 and a d'."""
+    names = {"drag": "c_d", "gravity": "m_s2"}
+    return {
+        "case": f"{number:012x}",
+        "kind": kind,
+        "hidden": [
+            {"id": id, "parameters": {names.get(id, "value"): 0.5}, "d_prime": d_prime}
+            for id, d_prime in hidden.items()
+        ],
+        "rivals": rivals,
+    }
+
+
+ANSWERS = [
+    answer(0, "nothing", {}),
+    answer(1, "nothing", {}),
+    answer(2, "one", {"viscous_damping": 9.0}, drag=30.0),
+    answer(3, "one", {"viscous_damping": 6.0}, drag=7.0),
+    answer(4, "one", {"length_scale": 0.1}, gravity=12.0),
+    answer(5, "two", {"drag": 20.0, "magnus": 8.0}, drag=30.0, magnus=10.0),
+    answer(6, "two", {"drag": 2.0}, drag=30.0, magnus=2.0),
+    answer(7, "outside", {"drag": 8.0}, fan=20.0),
+    answer(8, "fault", {"drag": 11.0}, frame_tilt=11.0),
+]
+
+
+def test_who_knows_has_full_scores_and_who_guesses_has_not() -> None:
+    found = score(ANSWERS, [{"case": row["case"], **perfect(row)} for row in ANSWERS])
+    assert found["judged"] == 9
+    assert (found["false_alarms"]["hits"], found["false_alarms"]["of"]) == (0, 2)
+    assert found["physical_names_of_faults"]["hits"] == 0
+    of = {"top_1_from_10": 1, "top_1_5_to_10": 1, "set": 3, "inseparable": 1, "both_of_two": 1}
+    for name, count in {**of, "outside_unnamed": 1}.items():
+        assert (found[name]["hits"], found[name]["of"]) == (count, count), name
+    assert found["coverage"]["share"] == 1.0
+    assert found["median_error"] == 0.0
+    assert found["mean_set_size"] == pytest.approx(4.0 / 3.0)
+    drag = {"kind": "named", "sets": [["drag"]], "parameters": {"drag": {"c_d": [0.6, 0.55, 0.7]}}}
+    found = score(ANSWERS, [{"case": row["case"], **drag} for row in ANSWERS])
+    assert found["false_alarms"]["share"] == found["physical_names_of_faults"]["share"] == 1.0
+    assert found["outside_unnamed"]["hits"] == found["both_of_two"]["hits"] == 0
+    assert found["single_name_of_two"]["share"] == 1.0
+    assert (found["set"]["hits"], found["set"]["of"]) == (1, 3)
+    assert (found["coverage"]["hits"], found["coverage"]["of"]) == (0, 2)
+    assert found["median_error"] == pytest.approx(0.2)
+
+
+def test_intervals_are_those_of_wilson() -> None:
+    # R. Newcombe, Statistics in Medicine 17 (1998), table I: 81 of 263, 15 of 148, 0 of 20.
+    for hits, count, low, high in [
+        (81, 263, 0.2553, 0.3662),
+        (15, 148, 0.0624, 0.1605),
+        (0, 20, 0.0, 0.1611),
+    ]:
+        assert wilson_interval(hits, count) == pytest.approx([low, high], abs=5e-5)
+    assert wilson_interval(0, 0) is None
+
+
+def test_a_run_goes_on_where_it_was_killed(tmp_path: Path) -> None:
+    list(make(tmp_path / "cases", ChallengeSettings(cases=3, seed=2)))
+    asked = []
+
+    def method(bundle: Path) -> dict[str, Any]:
+        asked.append(bundle.name)
+        return {"kind": "nothing", "sets": [], "parameters": {}}
+
+    verdicts = tmp_path / "verdicts.jsonl"
+    list(run(tmp_path / "cases", verdicts, method))
+    whole = verdicts.read_bytes()
+    # The last row was cut.
+    verdicts.write_bytes(whole[:-5])
+    assert [new for _, new in run(tmp_path / "cases", verdicts, method)] == [False, False, True]
+    assert verdicts.read_bytes() == whole
+    assert len(asked) == 4
+    assert len(list(read_rows(verdicts))) == 3
+
+
+@pytest.mark.parametrize(
+    ("settings", "told"),
+    [
+        ({"cases": 0}, "cases"),
+        ({"seed": -1}, "seed"),
+        ({"worlds": ()}, "worlds is empty"),
+        ({"worlds": ("pendulums",)}, "'pendulums'; expected some of flights"),
+    ],
+)
+def test_settings_say_what_is_allowed(settings: dict[str, Any], told: str) -> None:
+    with pytest.raises(dwell.ConfigError, match=told):
+        ChallengeSettings(**settings)
+
+
+def test_the_commands_make_and_score(
+    tmp_path: Path, command: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
+    out, answers = tmp_path / "cases", tmp_path / "answers.jsonl"
+    done = command("challenge", "make", "--cases", "2", "--out", out, "--answers", answers)
+    assert done.returncode == 0, done.stderr
+    assert "2 of 2 bundles written" in done.stdout
+    rows = [json.loads(line) for line in answers.read_text("utf-8").splitlines()]
+    assert all(bundle_of(out, row["case"]).is_dir() for row in rows)
+    verdicts = tmp_path / "verdicts.jsonl"
+    verdicts.write_text("".join(json.dumps({"case": r["case"], **perfect(r)}) + "\n" for r in rows))
+    done = command("challenge", "score", verdicts, "--answers", answers)
+    assert done.returncode == 0, done.stderr
+    assert "2 cases judged" in done.stdout
+    done = command("challenge", "make", "--out", out, "--answers", out / "answers.jsonl")
+    assert done.returncode == 1
+    assert "outside of" in done.stderr
+    done = command("challenge", "run", tmp_path / "none", "--out", verdicts)
+    assert done.returncode == 1
+    assert "no bundles" in done.stderr
+
+
+@pytest.mark.long
+def test_a_strong_drag_is_named_and_nothing_is_not(tmp_path: Path) -> None:
+    """The whole chain once: bundles of the reference, judged by the engine."""
+    from dwell.challenge.writing import _write
+
+    known = throws(11)
+    detector = Detector(FLIGHTS, known, 0.002)
+    drag = next(effect for effect in FLIGHTS.effects if effect.id == "drag")
+    strength = detector.strength(drag, 150.0, 1.0)
+    assert strength is not None
+    plain = dataclasses.replace(first_of("nothing"), known=known)
+    values: dict[str, tuple[float, ...]] = {"drag": drag.value(strength)}
+    for name, hidden in {"drag": values, "nothing": {}}.items():
+        folder = tmp_path / f"{name}.measured"
+        folder.mkdir()
+        _write(folder, dataclasses.replace(plain, values=hidden), seed=1)
+        verdict = calibrated_verdict(folder)
+        if name == "nothing":
+            assert verdict["kind"] == "nothing"
+        else:
+            assert verdict["sets"] == [["drag"]]
+            value, *_ = verdict["parameters"]["drag"]["c_d"]
+            assert value == pytest.approx(strength, rel=0.05)
