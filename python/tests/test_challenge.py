@@ -21,13 +21,25 @@ from dwell.challenge.running import read_rows
 from dwell.challenge.scores import wilson_interval
 from dwell.challenge.writing import bundle_of
 
-FLIGHTS = WORLDS["flights"]
+FLIGHTS, SERVOS = WORLDS["flights"], WORLDS["servos"]
 
 
 def throws(seed: int = 3) -> Any:  # noqa: ANN401
     """Throws of a table-tennis ball."""
     known = FLIGHTS.conditions(np.random.default_rng(seed))
     return dataclasses.replace(known, mass_kg=0.0027, radius_m=0.02)
+
+
+def ramps(slope: float) -> Any:  # noqa: ANN401
+    """Runs of a servo whose command rises, or is one step."""
+    known = SERVOS.conditions(np.random.default_rng(6))
+    t = np.arange(known.commands.shape[1]) / 100.0
+    commands = np.tile(0.3 + slope * t, (len(known.commands), 1))
+    return dataclasses.replace(known, commands=commands, rate_hz=100.0, samples=np.full(8, 300))
+
+
+def seen_of(known: Any, values: dict[str, tuple[float, ...]]) -> Any:  # noqa: ANN401
+    return SERVOS.observe(known, known.starts, values)[0, :, 0]
 
 
 def first_of(kind: str, seed: int = 0) -> Case:
@@ -65,6 +77,42 @@ def test_quadratic_drag_loses_the_energy_that_its_force_takes() -> None:
     area = np.pi * known.radius_m**2
     expected = -0.5 * 1.2041 * c_d * area / known.mass_kg * speed[:, 1:-1] ** 3
     assert np.abs(power - expected).max() < 0.02 * np.abs(expected).max()
+
+
+def test_a_step_of_a_servo_is_that_of_a_damped_oscillator() -> None:
+    known = ramps(0.0)
+    t = np.arange(300) / 100.0
+    frequency = np.sqrt(known.stiffness_n_m_rad / known.inertia_kg_m2)
+    ratio = known.damping_n_m_s_rad / 2.0 / np.sqrt(known.inertia_kg_m2 * known.stiffness_n_m_rad)
+    damped = frequency * np.sqrt(1.0 - ratio**2)
+    fade = np.exp(-ratio * frequency * t)
+    swing = np.cos(damped * t) + ratio * frequency / damped * np.sin(damped * t)
+    exact = 0.3 * (1.0 - fade * swing)
+    assert np.abs(seen_of(known, {}) - exact).max() < 1e-9
+
+
+def test_faults_of_servos_do_what_their_names_say() -> None:
+    rising = ramps(0.5)
+    plain = seen_of(rising, {})
+    # Late by a whole number of samples; scaled; a play that is pushed all the way.
+    assert np.abs(seen_of(rising, {"latency": (0.05,)})[5:] - plain[:-5]).max() < 1e-12
+    assert np.abs(seen_of(rising, {"command_scale": (1.1,)}) - 1.1 * plain).max() < 1e-12
+    less = dataclasses.replace(rising, commands=rising.commands - 0.02)
+    assert np.abs(seen_of(rising, {"backlash": (0.02,)}) - seen_of(less, {})).max() < 1e-12
+    # At rest where the servo pulls less than friction holds, and late by a lag's time on a ramp.
+    still = ramps(0.0)
+    holds = 0.31 * still.stiffness_n_m_rad
+    assert np.abs(seen_of(still, {"joint_friction": (holds,)})).max() == 0.0
+    # Less than that: it slides until the pull is the friction, half of it in the end.
+    slid = seen_of(still, {"joint_friction": (0.5 * holds,)})
+    rest = slid[-1]
+    pull = still.stiffness_n_m_rad * (0.3 - rest)
+    assert slid[-50:].min() == rest
+    assert abs(pull) <= 0.5 * holds
+    behind = plain[-1] - seen_of(rising, {"first_order_lag": (0.04,)})[-1]
+    assert behind == pytest.approx(0.5 * 0.04, rel=0.02)
+    quarter = seen_of(still, {"eccentric_encoder": (0.01,)}) - seen_of(still, {})
+    assert quarter[-1] == pytest.approx(0.01 * np.sin(0.3), rel=1e-3)
 
 
 def test_d_prime_is_that_of_a_fit_of_parabolas() -> None:
@@ -113,7 +161,7 @@ def test_a_case_is_the_same_whatever_their_number_and_no_other(tmp_path: Path) -
     assert case(2, few).name != case(2, dataclasses.replace(few, seed=5)).name
     made = [folder for _, folder, is_new in make(tmp_path, few) if is_new]
     texts = {path: path.read_bytes() for folder in made for path in folder.iterdir()}
-    assert len(texts) == 9
+    assert len(texts) in range(9, 13)
     # What is there stays; what is gone is made again to the same bytes.
     for path in made[1].iterdir():
         path.unlink()
@@ -136,20 +184,22 @@ def test_a_bundle_has_no_trace_of_its_cause(tmp_path: Path, kind: str) -> None:
         table = [
             row.split(",") for row in (folder / "trajectory.csv").read_text("utf-8").splitlines()
         ]
-        places = [row for row in table if row[3] in "xyz"]
+        places = [row for row in table if not row[3].startswith("w")]
         # Measured spins and all that says which, when and where are the same.
         rows[name] = [
             (folder / "manifest.json").read_bytes(),
             (folder / "episodes.csv").read_bytes(),
             [row[:4] for row in table],
             [row for row in table if row[3].startswith("w")],
+            (folder / "command.csv").exists() and (folder / "command.csv").read_bytes(),
             [os.stat(folder / file).st_mtime for file in sorted(os.listdir(folder))],
         ]
         rows[f"{name} values"] = [row[4] for row in places]
     assert rows["hidden"] == rows["plain"]
     assert rows["hidden values"] != rows["plain values"]
     words = (tmp_path / "hidden/manifest.json").read_text("utf-8")
-    assert not any(effect.id in words for effect in FLIGHTS.effects)
+    effects = (*FLIGHTS.effects, *SERVOS.effects)
+    assert not any(effect.id in words for effect in effects)
 
 
 def perfect(answer: dict[str, Any]) -> dict[str, Any]:
@@ -170,7 +220,7 @@ def perfect(answer: dict[str, Any]) -> dict[str, Any]:
 
 def answer(number: int, kind: str, rivals: dict[str, float], **hidden: float) -> dict[str, Any]:
     """An answer in which each effect has a first parameter of 0.5 and a d'."""
-    names = {"drag": "c_d", "gravity": "m_s2"}
+    names = {"drag": "c_d", "gravity": "gravity_m_s2"}
     return {
         "case": f"{number:012x}",
         "kind": kind,
@@ -252,7 +302,7 @@ def test_a_run_goes_on_where_it_was_killed(tmp_path: Path) -> None:
         ({"cases": 0}, "cases"),
         ({"seed": -1}, "seed"),
         ({"worlds": ()}, "worlds is empty"),
-        ({"worlds": ("pendulums",)}, "'pendulums'; expected some of flights"),
+        ({"worlds": ("pendulums",)}, "'pendulums'; expected some of flights, servos"),
     ],
 )
 def test_settings_say_what_is_allowed(settings: dict[str, Any], told: str) -> None:

@@ -14,19 +14,18 @@ from dwell.challenge.detection import Detector, World
 from dwell.challenge.effects import Effect, Kind
 from dwell.challenge.flights import Flights
 from dwell.challenge.noise import Noise
+from dwell.challenge.servos import Servos
 
 __all__ = ["STRATA", "WORLDS", "Case", "ChallengeSettings", "answer_rows", "case"]
 
 #: The worlds. To add one: a file with a class like :class:`Flights`, and its name here.
-WORLDS: dict[str, World] = {world.name: world for world in (Flights(),)}
+WORLDS: dict[str, World] = {world.name: world for world in (Flights(), Servos())}
 
 #: Cases of each kind in 800: nothing, one effect that can be told from others as far as the data
 #: goes, two, something outside the library, a fault of the measurement.
 STRATA: dict[str, int] = {"nothing": 300, "one": 200, "two": 100, "outside": 100, "fault": 100}
 _OF_KIND: dict[str, Kind] = {"one": "library", "outside": "outside", "fault": "fault"}
 
-#: Standard deviations of noise, m.
-_NOISE_M = (0.0005, 0.002, 0.005)
 #: Detection units, log-uniform; a unit is a d' of 5.
 _UNITS = (0.3, 30.0)
 _D_PRIME_A_UNIT = 5.0
@@ -139,7 +138,7 @@ def case(number: int, settings: ChallengeSettings) -> Case:
     while True:
         world = WORLDS[settings.worlds[int(rng.integers(len(settings.worlds)))]]
         known = world.conditions(rng)
-        noise = Noise.draw(rng, float(rng.choice(_NOISE_M)))
+        noise = Noise.draw(rng, float(rng.choice(world.noise_sds)))
         is_known = bool(rng.random() < 0.5)
         if kind == "nothing":
             return Case(

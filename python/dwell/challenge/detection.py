@@ -25,6 +25,8 @@ class World(Protocol):
     """Situations that are measured, and what may be hidden in them."""
 
     name: str
+    entity: str
+    noise_sds: tuple[float, ...]
     effects: tuple[Effect, ...]
     channels: tuple[str, ...]
 
@@ -39,6 +41,9 @@ class World(Protocol):
 
     def further(self, known: Any, rng: np.random.Generator) -> _Array:  # noqa: ANN401
         """Channels that nothing hides in, with noise, shape (episode, sample, channel)."""
+
+    def commands(self, known: Any) -> tuple[float, _Array] | None:  # noqa: ANN401
+        """Commands a second, and their values, shape (episode, command); ``None`` of none."""
 
     def manifest(self, known: Any, noise_sd: float | None) -> dict[str, Any]:  # noqa: ANN401
         """``manifest.json`` of the bundle."""

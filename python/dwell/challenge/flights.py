@@ -62,13 +62,16 @@ class Flights:
     """Throws of a ball. Nuisances are each throw's start: three positions, three velocities."""
 
     name = "flights"
+    entity = "ball"
+    #: Standard deviations of noise, m.
+    noise_sds: tuple[float, ...] = (0.0005, 0.002, 0.005)
     effects: tuple[Effect, ...] = (
         Effect("drag", "library", ("c_d",), (0.1, 2.0)),
         Effect("viscous_damping", "library", ("linear_per_s",), (0.002, 0.5)),
         Effect("magnus", "library", ("c_l",), (0.02, 2.0)),
         Effect("buoyancy", "library", ("fluid_density_kg_m3",), (0.9, 1.4)),
         # What gravity is on Earth.
-        Effect("gravity", "library", ("m_s2",), (9.764, 9.834), _GRAVITY_M_S2),
+        Effect("gravity", "library", ("gravity_m_s2",), (9.764, 9.834), _GRAVITY_M_S2),
         Effect("length_scale", "fault", ("scale",), (0.9, 1.1), 1.0),
         Effect("clock_scale", "fault", ("scale",), (0.9, 1.1), 1.0),
         Effect("frame_tilt", "fault", ("about_z_rad",), (0.0005, 0.2), two_sided=True),
@@ -172,6 +175,10 @@ class Flights:
         most = int(known.samples.max())
         noise = _SPIN_NOISE_RAD_S * rng.standard_normal((len(known.spins), most, 3))
         return known.spins[:, None, :] + noise
+
+    def commands(self, known: FlightConditions) -> None:
+        """None: nothing is commanded."""
+        del known
 
 
 class _Rates:

@@ -65,7 +65,8 @@ def _write(folder: Path, one: Case, seed: int) -> None:
     # Two or three in a row are held out together.
     sessions = [f"{int(value):06x}" for value in rng.integers(1 << 24, size=count // 2 + 1)]
     begins = rng.uniform(1.0, 60.0, count)
-    episodes, trajectory = [], []
+    told = world.commands(one.known)
+    episodes, trajectory, commands = [], [], []
     for k in rng.permutation(count):
         samples = int(one.known.samples[k])
         seen = one.noise.add(rng, clean[k, :samples])
@@ -77,7 +78,13 @@ def _write(folder: Path, one: Case, seed: int) -> None:
             t_s = begins[k] + sample / one.known.rate_hz
             for channel, value in zip(world.channels, row, strict=True):
                 digits = 7 if channel in world.channels[:places] else 4
-                trajectory.append(f"{names[k]},{t_s:.6f},ball,{channel},{value:.{digits}f}\n")
+                trajectory.append(
+                    f"{names[k]},{t_s:.6f},{world.entity},{channel},{value:.{digits}f}\n"
+                )
+        if told is not None:
+            for step, value in enumerate(told[1][k]):
+                t_s = begins[k] + step / told[0]
+                commands.append(f"{names[k]},{t_s:.6f},{world.entity},position,{value:.7f}\n")
     noise_sd = one.noise.sd if one.noise_is_known else None
     manifest = world.manifest(one.known, noise_sd)
     files = {
@@ -85,6 +92,8 @@ def _write(folder: Path, one: Case, seed: int) -> None:
         "episodes.csv": "episode,split_group,conditions\n" + "".join(episodes),
         "trajectory.csv": "episode,t_s,entity,channel,value\n" + "".join(trajectory),
     }
+    if told is not None:
+        files["command.csv"] = "episode,t_s,actuator,kind,value\n" + "".join(commands)
     for name, text in files.items():
         path = folder / name
         path.write_text(text, "utf-8")

@@ -18,7 +18,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     make.add_argument("--cases", type=count_from_1, default=80, metavar="N", help="how many (80)")
     make.add_argument("--seed", type=count, default=0, metavar="S", help="draws them (0)")
     make.add_argument(
-        "--worlds", nargs="+", metavar="WORLD", help="of flights; default: all there are"
+        "--worlds", nargs="+", metavar="WORLD", help="of flights, servos; default: all"
     )
     make.add_argument("--shard", type=shard, default=(0, 1), metavar="I/N", help="a part of them")
     make.add_argument("--out", type=path, required=True, metavar="DIR", help="for NAME.measured")
