@@ -364,8 +364,8 @@ def refuse_unknown(of: str, unknown: Iterable[str], known: Iterable[str]) -> Non
     for name in unknown:
         own = _CALLED_OTHERWISE.get(name)
         if own in known:
-            raise ConfigError(f"{of}: no argument {name!r}; here it is called {own}")
-        raise ConfigError(f"{of}: no argument {name!r}; {allowed_values(name, known)}")
+            raise ConfigError(f"{of}: no argument {quoted(name)}; here it is called {own}")
+        raise ConfigError(f"{of}: no argument {quoted(name)}; {allowed_values(name, known)}")
 
 
 def dataclass_from_mapping(

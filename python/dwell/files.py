@@ -76,7 +76,11 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """
     with open_file(path, most_bytes) as file:
         # A file that grows while it is read still ends at the cap.
-        found = file.read(most_bytes + 1)
+        try:
+            found = file.read(most_bytes + 1)
+        except OSError as error:
+            # The system says of an open file what is wrong, but not which it is.
+            raise OSError(error.errno, error.strerror, os.fspath(path)) from None
     if len(found) > most_bytes:
         _refuse_large(os.fspath(path), len(found), most_bytes)
     return found

@@ -16,6 +16,7 @@ from dwell.arguments import (
     integer_in_range,
     path,
     point,
+    quoted,
     sequence_items,
     text,
 )
@@ -39,6 +40,11 @@ def _played(
     """
     name = path("sound", sound)
     kind = "file" if name.lower().endswith(_ENDINGS) else "signal"
+    if kind == "signal" and os.path.splitext(name)[1]:
+        raise ConfigError(
+            f"sound is {quoted(name)}; allowed are files that end with {', '.join(_ENDINGS)}, and "
+            "the names of signals, as dwell.sounds.signals() lists them"
+        )
     place: dict[str, object]
     if isinstance(at, str):
         place = {"object": text("at", at)}

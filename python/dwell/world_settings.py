@@ -92,7 +92,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         by_name = mapping(at, laws, "parameters by the laws' names")
         # No numbers: the usual ones.
         rows = [
-            _row(f"{at}.{name}", {"id": name, **({"params": params} if params else {})})
+            _row(f"{at}.{name:.200}", {"id": name, **({"params": params} if params else {})})
             for name, params in by_name.items()
         ]
         return rows, _values("parameters", parameters)
@@ -169,7 +169,7 @@ def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
     if name not in _laws():
         near = difflib.get_close_matches(name, _laws(), 3)
         meant = f"did you mean {' or '.join(near)}? " if near else ""
-        raise ConfigError(f"{at}: no law {name!r}; {meant}allowed are {', '.join(_laws())}")
+        raise ConfigError(f"{at}: no law {quoted(name)}; {meant}allowed are {', '.join(_laws())}")
     law = _laws()[name]
     if "params" not in row:
         if law["usual"] is None:
@@ -184,7 +184,7 @@ def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
         if param not in known:
             near = difflib.get_close_matches(param, known, 1)
             meant = f"did you mean {near[0]}? " if near else ""
-            raise ConfigError(f"{at}: {name} has no parameter {param!r}; {meant}{_has(law)}")
+            raise ConfigError(f"{at}: {name} has no parameter {quoted(param)}; {meant}{_has(law)}")
         low, high = known[param]["low"], known[param]["high"]
         if not low <= value <= high:
             raise ConfigError(f"{at}: {name}.{param} is {value:g}; {_has(law)}")

@@ -87,6 +87,12 @@ def test_devices_folders_and_sockets_are_refused(tmp_path: Path) -> None:
             pass
 
 
+@pytest.mark.skipif(not Path("/proc/self/mem").exists(), reason="the system has no /proc")
+def test_a_file_whose_bytes_cannot_be_read_is_named() -> None:
+    with pytest.raises(OSError, match="/proc/self/mem"):
+        dwell.Replay.read("/proc/self/mem")
+
+
 def test_files_above_their_cap_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "a"
     path.write_bytes(b"12345")

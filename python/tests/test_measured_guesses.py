@@ -318,3 +318,8 @@ def test_files_are_paths_or_texts(tmp_path: Path) -> None:
         guessed_map([path], "flight")
     with pytest.raises(FileNotFoundError):
         guessed_map([tmp_path / "none.csv"])
+
+
+def test_no_files_are_refused() -> None:
+    with pytest.raises(dwell.ConfigError, match="files is empty; expected one or more paths"):
+        guessed_map([])

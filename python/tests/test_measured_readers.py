@@ -161,6 +161,31 @@ def test_demonstrations_of_hdf5_are_read_in_the_order_of_their_numbers(tmp_path:
         open_table(tmp_path / "demos.hdf5", "date")
 
 
+def test_damaged_hdf5_is_refused_by_a_sentence_with_its_name(tmp_path: Path) -> None:
+    whole, damaged = tmp_path / "whole.hdf5", tmp_path / "damaged.hdf5"
+    h5py = pytest.importorskip("h5py")
+    with h5py.File(whole, "w") as file:
+        for k in range(4):
+            group = file.create_group(f"data/demo_{k}")
+            group["t"], group["place"] = np.arange(40) / 60, np.zeros((40, 3))
+    content = whole.read_bytes()
+    told = []
+    for seed in range(60):
+        rng = np.random.default_rng(seed)
+        changed = bytearray(content[: rng.integers(1, len(content))] if seed % 3 else content)
+        # Most of what may be wrong stands in the headers.
+        for at in rng.integers(0, min(len(changed), 2000), 4):
+            changed[at] ^= 1 << rng.integers(8)
+        damaged.write_bytes(changed)
+        try:
+            for part in reader_of(damaged).parts(damaged):
+                list(open_table(damaged, part).rows)
+        except ValueError as error:
+            told.append(str(error))
+    assert len(told) > 30
+    assert all(sentence.startswith(f"{damaged}: ") for sentence in told), told
+
+
 def test_hdf5_that_leads_elsewhere_is_not_followed(tmp_path: Path) -> None:
     h5py = pytest.importorskip("h5py")
     with h5py.File(tmp_path / "other.h5", "w") as file:

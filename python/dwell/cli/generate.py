@@ -26,6 +26,8 @@ from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read
 _FORMS = ("dwell", "suncg", "glb")
 #: Letters of the files of a room of SUNCG, and what says that there is none.
 _ROOM_PARTS = (("c", "hideCeiling"), ("f", "hideFloor"), ("w", "hideWalls"))
+#: How whole files that houses show end; a file that was cut does not.
+_ENDS = {".png": b"IEND\xae\x42\x60\x82", ".obj": b"\n", ".mtl": b"\n", ".json": b"}"}
 #: Houses that failed and are told of on standard error.
 _MAX_LISTED_FAILURES = 10
 
@@ -226,9 +228,14 @@ def _is_there(args: argparse.Namespace, row: dict[str, Any], whole_models: set[P
 
 
 def _is_whole(file: tuple[Path, int]) -> bool:
-    """Returns whether a regular file has as many bytes, or more."""
+    """Returns whether a regular file has as many bytes, or more, and ends as its form does."""
     path, least = file
-    return path.is_file() and path.stat().st_size >= least
+    if not path.is_file() or path.stat().st_size < least:
+        return False
+    end = _ENDS.get(path.suffix, b"")
+    with open_file(path) as opened:
+        opened.seek(max(0, path.stat().st_size - len(end)))
+        return opened.read() == end if end else True
 
 
 def _shown(path: Path, whole_models: set[Path]) -> Iterator[tuple[Path, int]]:

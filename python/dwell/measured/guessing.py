@@ -12,6 +12,7 @@ from pathlib import Path
 
 import numpy as np
 
+from dwell import ConfigError
 from dwell.arguments import choice, file_path, sequence_items
 from dwell.measured.guesses import Guess
 from dwell.measured.guesses.drives import guess_drive
@@ -49,6 +50,8 @@ def guessed_map(files: Sequence[str | os.PathLike[str]], kind: str | None = None
     """
     given = sequence_items("files", files, "expected paths of files")
     paths = [Path(file_path(f"files[{k}]", file)) for k, file in enumerate(given)]
+    if not paths:
+        raise ConfigError("files is empty; expected one or more paths of files")
     if kind is not None:
         choice("kind", kind, sorted(KINDS))
     with measured_faults():

@@ -6,6 +6,7 @@ links, virtual datasets and values in other files are refused.
 
 from __future__ import annotations
 
+import contextlib
 from collections.abc import Iterator
 from pathlib import Path
 from typing import Any
@@ -39,19 +40,33 @@ def _module(path: Path) -> Any:  # noqa: ANN401 - an extra without types
     return h5py
 
 
-def _open(path: Path, part: str | None) -> OpenTable:
+@contextlib.contextmanager
+def _opened(path: Path) -> Iterator[tuple[Any, Any]]:
+    """The module ``h5py``, and the file.
+
+    Raises:
+        OSError: The system refuses to read it.
+        ValueError: It is damaged; the message names the file.
+    """
     h5py = _module(path)
     try:
         with open_file(path, _MAX_BYTES) as handle, h5py.File(handle, "r") as file:
-            root = _group(h5py, path, file, part or "/")
-            first = next(iter(_episodes(h5py, path, root)), None)
-            if first is None:
-                raise ValueError(f"{path}: no arrays of numbers in {part or '/'!r}")
-            widths = {name: a.shape for name, a in _arrays(h5py, path, first[1]).items()}
-    except (OSError, RuntimeError, KeyError) as error:
-        if isinstance(error, OSError) and error.errno is not None and error.filename is not None:
+            yield h5py, file
+    except (OSError, RuntimeError, LookupError, TypeError, ValueError, ArithmeticError) as error:
+        is_systems = isinstance(error, OSError) and None not in (error.errno, error.filename)
+        if is_systems or (isinstance(error, ValueError) and str(error).startswith(f"{path}: ")):
             raise
+        # h5py says by many types what is wrong with a file, and never in which.
         raise ValueError(f"{path}: no HDF5 that can be read: {error}") from None
+
+
+def _open(path: Path, part: str | None) -> OpenTable:
+    with _opened(path) as (h5py, file):
+        root = _group(h5py, path, file, part or "/")
+        first = next(iter(_episodes(h5py, path, root)), None)
+        if first is None:
+            raise ValueError(f"{path}: no arrays of numbers in {part or '/'!r}")
+        widths = {name: a.shape for name, a in _arrays(h5py, path, first[1]).items()}
     columns = [name for own in _columns(widths).values() for name in own]
     if len(columns) > MAX_COLUMNS:
         raise ValueError(f"{path}: {len(columns)} columns; at most {MAX_COLUMNS} are read")
@@ -60,35 +75,30 @@ def _open(path: Path, part: str | None) -> OpenTable:
 
 def _parts(path: Path) -> list[str]:
     """Groups that hold episodes or arrays."""
-    h5py = _module(path)
-    with open_file(path, _MAX_BYTES) as handle, h5py.File(handle, "r") as file:
+    with _opened(path) as (h5py, file):
         names = [name for name in file if _is_hard(h5py, file, name)]
         groups = [name for name in names if isinstance(file[name], h5py.Group)]
         return groups or ["/"]
 
 
 def _rows(path: Path, part: str | None) -> Iterator[tuple[int, Row]]:
-    h5py = _module(path)
     number = 0
-    try:
-        with open_file(path, _MAX_BYTES) as handle, h5py.File(handle, "r") as file:
-            for name, group in _episodes(h5py, path, _group(h5py, path, file, part or "/")):
-                arrays = _arrays(h5py, path, group)
-                lengths = {key: array.shape[0] for key, array in arrays.items()}
-                count = min(lengths.values())
-                own = _columns({key: array.shape for key, array in arrays.items()})
-                blocks = {
-                    key: np.asarray(array[:count], np.float64).reshape(count, -1)
-                    for key, array in arrays.items()
-                }
-                for k in range(count):
-                    number += 1
-                    row: Row = {GROUP_COLUMN: name, "{index}": k}
-                    for key, names in own.items():
-                        row.update(zip(names, blocks[key][k].tolist(), strict=True))
-                    yield number, row
-    except (OSError, RuntimeError, KeyError) as error:
-        raise ValueError(f"{path}: no HDF5 that can be read: {error}") from None
+    with _opened(path) as (h5py, file):
+        for name, group in _episodes(h5py, path, _group(h5py, path, file, part or "/")):
+            arrays = _arrays(h5py, path, group)
+            lengths = {key: array.shape[0] for key, array in arrays.items()}
+            count = min(lengths.values())
+            own = _columns({key: array.shape for key, array in arrays.items()})
+            blocks = {
+                key: np.asarray(array[:count], np.float64).reshape(count, -1)
+                for key, array in arrays.items()
+            }
+            for k in range(count):
+                number += 1
+                row: Row = {GROUP_COLUMN: name, "{index}": k}
+                for key, names in own.items():
+                    row.update(zip(names, blocks[key][k].tolist(), strict=True))
+                yield number, row
 
 
 def _is_hard(h5py: Any, group: Any, name: str) -> bool:  # noqa: ANN401
