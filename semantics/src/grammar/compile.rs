@@ -2,6 +2,7 @@
 
 use super::GrammarError;
 use super::file::{GrammarFile, RuleFile};
+use super::left_corner::LeftCorners;
 use super::template::{TemplateElement, VariantPattern, category, read};
 use std::collections::{BTreeMap, BTreeSet};
 
@@ -51,8 +52,9 @@ pub(super) struct Productions {
     /// Productions by the non-terminal of their result.
     pub(super) of_result: Vec<Vec<usize>>,
     /// Productions by function and the non-terminal of their result.
-    pub(super) of_function: BTreeMap<(String, NonTerminal), Vec<usize>>,
+    pub(super) of_function: BTreeMap<String, BTreeMap<NonTerminal, Vec<usize>>>,
     pub(super) numbers: BTreeMap<(String, usize), NonTerminal>,
+    pub(super) left_corners: LeftCorners,
 }
 
 pub(super) const COUNT: &str = "count";
@@ -66,14 +68,13 @@ struct Compiler<'a> {
     found: Productions,
 }
 
-impl Compiler<'_> {
-    fn variants(&self, category: &str) -> Vec<String> {
-        let one = || vec![String::new()];
-        self.file
-            .variants
-            .get(category)
-            .cloned()
-            .unwrap_or_else(one)
+/// The variants of a category that has one.
+static ONE_VARIANT: [String; 1] = [String::new()];
+
+impl<'a> Compiler<'a> {
+    fn variants(&self, category: &str) -> &'a [String] {
+        let own = self.file.variants.get(category);
+        own.map_or(&ONE_VARIANT, Vec::as_slice)
     }
 
     fn intern_non_terminal(&mut self, category: &str, variant: usize) -> NonTerminal {
@@ -124,7 +125,7 @@ impl Compiler<'_> {
             choices = next;
         }
         if choices.is_empty() {
-            let known = self.variants(&result.0);
+            let known = self.variants(&result.0).to_vec();
             return Err(unknown(rule, "common variant of", &rule.result, known));
         }
         Ok(choices)
@@ -142,7 +143,7 @@ impl Compiler<'_> {
         let name = choice.get(&name).unwrap_or(&name);
         let variants = self.variants(category);
         let at = variants.iter().position(|known| known == name);
-        at.ok_or_else(|| unknown(rule, "variant", name, variants))
+        at.ok_or_else(|| unknown(rule, "variant", name, variants.to_vec()))
     }
 
     fn symbol(
@@ -218,8 +219,12 @@ impl Compiler<'_> {
                 cost: rule.cost + u32::from(wording.is_none()),
             });
             self.found.of_result[number].push(at);
-            let key = (rule.function.clone(), number);
-            self.found.of_function.entry(key).or_default().push(at);
+            let own = self
+                .found
+                .of_function
+                .entry(rule.function.clone())
+                .or_default();
+            own.entry(number).or_default().push(at);
         }
         Ok(())
     }
@@ -265,27 +270,22 @@ pub(super) fn compile(file: &GrammarFile) -> Result<Productions, GrammarError> {
         made: made.collect(),
         found: Productions::default(),
     };
+    // The number of wordings that each function has so far.
+    let mut wordings: BTreeMap<&str, usize> = BTreeMap::new();
     for rule in &file.rule {
-        let first = compiler.wordings_of(&rule.function);
-        for (k, text) in rule.texts.iter().enumerate() {
-            compiler.add(rule, text, Some(first + k))?;
+        let wordings = wordings.entry(&rule.function).or_insert(0_usize);
+        for text in &rule.texts {
+            compiler.add(rule, text, Some(*wordings))?;
+            *wordings += 1;
         }
         for text in &rule.reads {
             compiler.add(rule, text, None)?;
         }
     }
-    let found = compiler.found;
+    let mut found = compiler.found;
     check_no_cycles(&found)?;
+    found.left_corners = LeftCorners::gather(&found.all, found.of_result.len());
     Ok(found)
-}
-
-impl Compiler<'_> {
-    /// The number of wordings that a function has so far.
-    fn wordings_of(&self, function: &str) -> usize {
-        let own = self.found.all.iter().filter(|one| one.function == function);
-        let last = own.filter_map(|one| one.wording).max();
-        last.map_or(0, |last| last + 1)
-    }
 }
 
 /// Checks that there is no cycle of unit productions (one argument and nothing else): a text would have infinitely many parses.

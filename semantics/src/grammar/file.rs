@@ -19,7 +19,7 @@ pub(super) struct GrammarFile {
     /// Phrases with others that mean the same, for texts that are not understood as they stand; the other may be empty.
     #[serde(default)]
     pub(super) paraphrases: Vec<[String; 2]>,
-    /// Endings of words that are words of their own, with these: "n't" is "not".
+    /// Endings of words that are words of their own, with these: "n't" is "not". Without one they say nothing: "cream-coloured".
     #[serde(default)]
     pub(super) endings: Vec<[String; 2]>,
     /// Words that agree with an argument, by name: their forms by variant.

@@ -58,7 +58,8 @@ fn split(text: &str) -> Vec<String> {
 #[derive(Clone, Debug, Default)]
 pub struct Lexicon {
     entries: Vec<LexiconEntry>,
-    by_name: BTreeMap<(String, String), usize>,
+    /// Entries by class and name.
+    by_name: BTreeMap<String, BTreeMap<String, usize>>,
     /// Forms by their first word.
     by_first_word: BTreeMap<String, Vec<EntryForm>>,
     /// Every word of every form, normalized.
@@ -91,11 +92,11 @@ pub(super) struct EntryMatch {
 impl Lexicon {
     /// Adds an entry. If one of its class and name exists, that gains the forms, as synonyms of those that it has.
     pub fn add(&mut self, entry: LexiconEntry) {
-        let key = (entry.class.clone(), entry.id.clone());
-        let at = if let Some(at) = self.by_name.get(&key) {
-            *at
+        let at = if let Some(at) = self.place(&entry.class, &entry.id) {
+            at
         } else {
-            self.by_name.insert(key, self.entries.len());
+            let names = self.by_name.entry(entry.class.clone()).or_default();
+            names.insert(entry.id.clone(), self.entries.len());
             self.entries.push(LexiconEntry {
                 forms: vec![Vec::new(); entry.forms.len()],
                 ..entry.clone()
@@ -158,8 +159,11 @@ impl Lexicon {
 
     /// The entry of a class and name.
     pub fn find(&self, class: &str, id: &str) -> Option<&LexiconEntry> {
-        let at = self.by_name.get(&(class.to_owned(), id.to_owned()))?;
-        self.entries.get(*at)
+        self.entries.get(self.place(class, id)?)
+    }
+
+    fn place(&self, class: &str, id: &str) -> Option<usize> {
+        self.by_name.get(class)?.get(id).copied()
     }
 
     pub(super) fn entry(&self, at: usize) -> &LexiconEntry {

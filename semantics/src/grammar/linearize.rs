@@ -28,8 +28,8 @@ impl Grammar {
         else {
             return None;
         };
-        let key = (function.clone(), category);
-        let productions = self.productions.of_function.get(&key)?;
+        let of_function = self.productions.of_function.get(function)?;
+        let productions = of_function.get(&category)?;
         let productions = || productions.iter().map(|at| &self.productions.all[*at]);
         let mut wordings: Vec<usize> = productions().filter_map(|one| one.wording).collect();
         wordings.dedup();

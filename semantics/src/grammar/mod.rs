@@ -11,6 +11,7 @@
 mod compile;
 mod error;
 mod file;
+mod left_corner;
 mod lexicon;
 mod linearize;
 mod nearest;
@@ -110,9 +111,7 @@ impl Grammar {
         tree: &Tree,
         choose: WordingChooser<'_>,
     ) -> Option<(String, Vec<Span>)> {
-        let own = self.productions.of_function.keys();
-        let own = own.filter(|(name, _)| tree.function() == Some(name.as_str()));
-        let own = own.map(|(_, category)| category);
+        let own = self.productions.of_function.get(tree.function()?)?.keys();
         let phrases = (self.start.iter().chain(own))
             .find_map(|category| self.linearize_function(tree, *category, choose))?;
         Some(text::write(&phrases))

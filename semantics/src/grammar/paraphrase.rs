@@ -64,7 +64,8 @@ impl Paraphrases {
             if let Some(stem) = word.strip_suffix(ending.as_str())
                 && !stem.is_empty()
             {
-                return vec![stem.to_owned(), meaning.clone()];
+                let meaning = Some(meaning.clone()).filter(|meaning| !meaning.is_empty());
+                return std::iter::once(stem.to_owned()).chain(meaning).collect();
             }
         }
         vec![word.to_owned()]

@@ -7,7 +7,7 @@ use super::compile::{ArgumentKind, NonTerminal, Symbol};
 use super::tree_interner::{TreeId, TreeInterner};
 use super::{Grammar, Tree};
 use dwell_scene::interrupt;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 /// Largest number of readings that are kept for each span of a text.
 const MOST_READINGS: usize = 16;
@@ -69,7 +69,7 @@ pub struct Parse {
     pub trees: Vec<(u32, Tree)>,
     /// The number of words that could be the beginning of a sentence.
     pub understood: usize,
-    /// The words and lexicon classes that could follow them.
+    /// The words and lexicon classes that could follow them; none where there are trees.
     pub expected: Vec<String>,
 }
 
@@ -86,15 +86,30 @@ struct ParseMemo {
     items: BTreeMap<(Item, usize), Vec<PartReading>>,
 }
 
+/// Drops readings of a cost that [`MOST_READINGS`] others are below, so that fewer are compared as trees.
+fn keep_cheapest<T>(found: &mut Vec<T>, cost: impl Fn(&T) -> u32) {
+    if found.len() > MOST_READINGS {
+        let mut costs: Vec<u32> = found.iter().map(&cost).collect();
+        let (_, most, _) = costs.select_nth_unstable(MOST_READINGS - 1);
+        let most = *most;
+        found.retain(|one| cost(one) <= most);
+    }
+}
+
 struct Parser<'a> {
     grammar: &'a Grammar,
     words: &'a [String],
     sets: Vec<ItemSet>,
+    /// Whether each production can begin at the place that is worked on.
+    starts: Vec<bool>,
 }
 
 impl Parser<'_> {
     fn predict(&mut self, at: usize, category: NonTerminal) {
         for production in &self.grammar.productions.of_result[category] {
+            if !self.starts[*production] {
+                continue;
+            }
             let item = Item {
                 production: *production,
                 dot: 0,
@@ -159,6 +174,20 @@ impl Parser<'_> {
 
     /// Completes, predicts and scans all items that end at `at`.
     fn process_set(&mut self, at: usize) {
+        if at > 0 && self.sets[at].order.is_empty() {
+            return;
+        }
+        let productions = &self.grammar.productions;
+        let (lexicon, all) = (&self.grammar.lexicon, &productions.all);
+        self.starts = productions
+            .left_corners
+            .starting_at(lexicon, self.words, at, all);
+        if at == 0 {
+            for start in &self.grammar.start {
+                // No item waits for the start category: it is predicted once, here.
+                self.predict(0, *start);
+            }
+        }
         let mut next = 0;
         while let Some(item) = self.sets[at].order.get(next).copied() {
             next += 1;
@@ -212,6 +241,9 @@ impl Parser<'_> {
                 found.push((cost + production.cost, node));
             }
         }
+        found.sort_unstable();
+        found.dedup();
+        keep_cheapest(&mut found, |reading| reading.0);
         let nodes = &known.nodes;
         found.sort_by(|p, q| p.0.cmp(&q.0).then_with(|| nodes.compare(p.1, q.1)));
         found.dedup_by_key(|reading| reading.1);
@@ -248,6 +280,7 @@ impl Parser<'_> {
                 }
             }
         }
+        keep_cheapest(&mut found, |reading| reading.0);
         let nodes = &known.nodes;
         found.sort_by(|p, q| {
             p.0.cmp(&q.0)
@@ -291,25 +324,45 @@ impl Parser<'_> {
 
     /// The words and lexicon classes that could follow the first `at` words.
     fn expected(&self, at: usize) -> Vec<String> {
-        let mut expected: Vec<String> = Vec::new();
+        let productions = &self.grammar.productions;
+        let mut expected: BTreeSet<String> = BTreeSet::new();
+        let mut predicted = vec![false; productions.of_result.len()];
+        let mut open: Vec<NonTerminal> = Vec::new();
+        if at == 0 {
+            open.extend(&self.grammar.start);
+        }
+        let mut expect = |symbol: Option<&Symbol>, open: &mut Vec<NonTerminal>| {
+            let Some(symbol) = symbol else {
+                return;
+            };
+            let name = match symbol {
+                Symbol::Word(word) => word.clone(),
+                Symbol::Argument(_, ArgumentKind::Rules(category)) => {
+                    open.push(*category);
+                    return;
+                }
+                Symbol::Argument(_, ArgumentKind::Entry(class, _)) => format!("<{class}>"),
+                Symbol::Argument(_, ArgumentKind::Count) => "<count>".to_owned(),
+                Symbol::Argument(_, ArgumentKind::Digits) => "<digits>".to_owned(),
+                Symbol::Argument(_, ArgumentKind::Ordinal) => "<ordinal>".to_owned(),
+            };
+            expected.insert(name);
+        };
         for item in &self.sets[at].order {
-            let production = &self.grammar.productions.all[item.production];
-            match production.symbols.get(item.dot) {
-                Some(Symbol::Word(word)) => expected.push(word.clone()),
-                Some(Symbol::Argument(_, ArgumentKind::Entry(class, _))) => {
-                    expected.push(format!("<{class}>"));
-                }
-                Some(Symbol::Argument(_, ArgumentKind::Count)) => expected.push("<count>".into()),
-                Some(Symbol::Argument(_, ArgumentKind::Digits)) => expected.push("<digits>".into()),
-                Some(Symbol::Argument(_, ArgumentKind::Ordinal)) => {
-                    expected.push("<ordinal>".into());
-                }
-                _ => {}
+            expect(
+                productions.all[item.production].symbols.get(item.dot),
+                &mut open,
+            );
+        }
+        while let Some(category) = open.pop() {
+            if std::mem::replace(&mut predicted[category], true) {
+                continue;
+            }
+            for production in &productions.of_result[category] {
+                expect(productions.all[*production].symbols.first(), &mut open);
             }
         }
-        expected.sort();
-        expected.dedup();
-        expected
+        expected.into_iter().collect()
     }
 }
 
@@ -322,11 +375,8 @@ impl Grammar {
             grammar: self,
             words,
             sets: (0..=words.len()).map(|_| ItemSet::default()).collect(),
+            starts: Vec::new(),
         };
-        for start in &self.start {
-            // No item waits for the start category: it is predicted once, here.
-            parser.predict(0, *start);
-        }
         for at in 0..=words.len() {
             interrupt::unwind_if_cancelled();
             parser.process_set(at);
@@ -344,9 +394,13 @@ impl Grammar {
         trees.dedup_by(|p, q| p.1 == q.1);
         trees.truncate(MOST_READINGS);
         Parse {
+            expected: if trees.is_empty() {
+                parser.expected(understood)
+            } else {
+                Vec::new()
+            },
             trees,
             understood,
-            expected: parser.expected(understood),
         }
     }
 }

@@ -1,11 +1,12 @@
 //! Trees with shared branches: the readings of a text, of which most differ in few places.
 
 use super::Tree;
+use std::cell::RefCell;
 use std::cmp::Ordering;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, HashMap};
 
 /// A tree in [`TreeInterner`]; equal trees have equal ids.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord)]
+#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
 pub(super) struct TreeId(usize);
 
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
@@ -22,6 +23,8 @@ pub(super) struct TreeInterner {
     ids: BTreeMap<Node, TreeId>,
     functions: Vec<String>,
     numbers: BTreeMap<String, usize>,
+    /// The order of pairs that were compared; looked up only.
+    compared: RefCell<HashMap<(TreeId, TreeId), Ordering>>,
 }
 
 impl TreeInterner {
@@ -57,9 +60,15 @@ impl TreeInterner {
             return Ordering::Equal;
         }
         match (&self.all[a.0], &self.all[b.0]) {
-            (Node::Apply(f, of), Node::Apply(g, to)) => self.functions[*f]
-                .cmp(&self.functions[*g])
-                .then_with(|| self.compare_all(of.iter(), to.iter())),
+            (Node::Apply(f, of), Node::Apply(g, to)) if f == g => {
+                if let Some(known) = self.compared.borrow().get(&(a, b)) {
+                    return *known;
+                }
+                let order = self.compare_all(of.iter(), to.iter());
+                self.compared.borrow_mut().insert((a, b), order);
+                order
+            }
+            (Node::Apply(f, _), Node::Apply(g, _)) => self.functions[*f].cmp(&self.functions[*g]),
             (Node::Apply(..), Node::Leaf(_)) => Ordering::Less,
             (Node::Leaf(_), Node::Apply(..)) => Ordering::Greater,
             (Node::Leaf(a), Node::Leaf(b)) => a.cmp(b),
