@@ -10,7 +10,9 @@ from collections.abc import Iterator
 from dwell.cli import COMMANDS, parser
 
 #: Those with commands of their own below them.
-_BELOW = {"localize": ("make", "score"), "measure": ("import", "coverage"), "record": ("teach",)}
+_BELOW = {"localize": ("make", "score"), "measure": ("import", "coverage"), "record": ("teach",),
+    "views": ("make", "export", "datasheet"),
+}
 
 
 @contextlib.contextmanager

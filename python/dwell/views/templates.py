@@ -1,0 +1,173 @@
+"""Templates of questions about views: forms with a hole, and what must be clear in a picture.
+
+To add one: a function here, and a line in :data:`TEMPLATES`.
+"""
+
+from __future__ import annotations
+
+import dataclasses
+from collections.abc import Callable, Iterator, Sequence
+from typing import Any, Literal
+
+from dwell.views.forms import (
+    Form,
+    described,
+    exists,
+    holds,
+    modifier,
+    seen,
+    the,
+    whether,
+)
+
+#: A large thing of a record.
+Thing = dict[str, Any]
+
+
+@dataclasses.dataclass(frozen=True)
+class Asked:
+    """A form that may be asked of any view.
+
+    Attributes:
+        form: The question.
+        of_all: Descriptions of which every thing in the picture must be clear, and none a speck.
+        of_one: Descriptions that must fit one thing in the picture, which is clear.
+        needs_light: Whether the things must not be dark.
+        clear: What else must be clear: ``apart``, that the two things are beside each other in the
+            picture; ``level``, that one is as high as the other; ``side``, that no thing is near
+            the lines between left, ahead and right.
+        words: What the numbers of alternatives mean.
+    """
+
+    form: Form
+    of_all: tuple[Form, ...] = ()
+    of_one: tuple[Form, ...] = ()
+    needs_light: bool = False
+    clear: Literal["", "apart", "level", "side"] = ""
+    words: tuple[str, ...] = ()
+
+
+def _nouns(things: Sequence[Thing]) -> list[str]:
+    return sorted({thing["noun"] for thing in things})
+
+
+def _pairs(things: Sequence[Thing]) -> Iterator[tuple[str, str]]:
+    """Nouns of things that are seen together in a view."""
+    nouns = _nouns(things)
+    for first in nouns:
+        for second in nouns:
+            if first != second:
+                yield first, second
+
+
+def _existence(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Do you see a chair?"""
+    for noun in _nouns(things):
+        yield Asked(whether(exists(seen(noun))), of_all=(described(noun),))
+
+
+def _existence_color(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Do you see a red chair?"""
+    for thing in things:
+        if len(thing["colors"]) == 1:
+            what = seen(thing["noun"], colors=thing["colors"])
+            yield Asked(whether(exists(what)), of_all=(described(thing["noun"]),), needs_light=True)
+
+
+def _count(things: Sequence[Thing]) -> Iterator[Asked]:
+    """How many chairs do you see?"""
+    for noun in _nouns(things):
+        yield Asked({"question": {"how_many": seen(noun)}}, of_all=(described(noun),))
+
+
+def _color(things: Sequence[Thing]) -> Iterator[Asked]:
+    """What color is the chair?"""
+    for noun in _nouns(things):
+        form = {"question": {"attribute": {"kind": "color", "of": the(noun)}}}
+        yield Asked(form, of_one=(described(noun),), needs_light=True)
+
+
+def _more(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Do you see more chairs than tables?"""
+    for first, second in _pairs(things):
+        clause = {"more": {"more": seen(first), "than": seen(second)}}
+        yield Asked(whether(clause), of_all=(described(first), described(second)))
+
+
+def _larger(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the chair larger than the lamp?"""
+    for first, second in _pairs(things):
+        clause = holds("larger_than", the(first), the(second))
+        yield Asked(whether(clause), of_one=(described(first), described(second)))
+
+
+def _side_of(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the chair to the left of the table?"""
+    for first, second in _pairs(things):
+        clause = holds("left_of", the(first), the(second))
+        both = (described(first), described(second))
+        yield Asked(whether(clause), of_one=both, clear="apart")
+
+
+def _before(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the chair in front of the table?"""
+    for first, second in _pairs(things):
+        clause = holds("in_front_of", the(first), the(second))
+        both = (described(first), described(second))
+        yield Asked(whether(clause), of_one=both, clear="level")
+
+
+def _next_to(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the chair next to the table?"""
+    for first, second in _pairs(things):
+        clause = holds("next_to", the(first), the(second))
+        yield Asked(whether(clause), of_one=(described(first), described(second)))
+
+
+def _side(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is there a chair on your left?"""
+    for noun in _nouns(things):
+        for side in ("on_left", "on_right"):
+            what = seen(noun, modifiers=[modifier(side)])
+            yield Asked(whether(exists(what)), of_all=(described(noun),), clear="side")
+
+
+def _place(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Where is the cup?"""
+    for noun in _nouns(things):
+        form = {"question": {"attribute": {"kind": "place", "of": the(noun)}}}
+        yield Asked(form, of_one=(described(noun),))
+
+
+def _open(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the door open?"""
+    for noun in sorted({thing["noun"] for thing in things if thing["openness"] is not None}):
+        clause = {"is": {"subject": the(noun), "quality": {"state": "open"}}}
+        yield Asked(whether(clause), of_one=(described(noun),))
+
+
+def _on(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the lamp on?"""
+    for noun in sorted({thing["noun"] for thing in things if thing["switched_on"] is not None}):
+        clause = {"is": {"subject": the(noun), "quality": {"state": "switched_on"}}}
+        yield Asked(whether(clause), of_one=(described(noun),))
+
+
+#: Kind, template and its forms out of the large things of a view.
+TEMPLATES: dict[str, tuple[str, Callable[[Sequence[Thing]], Iterator[Asked]]]] = {
+    "existence": ("existence", _existence),
+    "existence_color": ("existence", _existence_color),
+    "count": ("count", _count),
+    "color": ("attribute", _color),
+    "more": ("comparison", _more),
+    "larger": ("comparison", _larger),
+    "left_of": ("relation", _side_of),
+    "in_front_of": ("relation", _before),
+    "next_to": ("relation", _next_to),
+    "side": ("location", _side),
+    "place": ("location", _place),
+    "open": ("state", _open),
+    "on": ("state", _on),
+}
+
+__all__ = ["TEMPLATES", "Asked"]
