@@ -147,9 +147,7 @@ def test_a_question_is_asked_twice_with_different_answers(records: list[ViewReco
 
 
 def test_who_sees_no_picture_is_right_half_the_time(records: list[ViewRecord]) -> None:
-    asked = [
-        (one["text"], one["answer"]) for record in records for one in record.row["questions"]
-    ]
+    asked = [(one["text"], one["answer"]) for record in records for one in record.row["questions"]]
     # Whatever is answered by the words alone, of each pair one is wrong.
     guessed = NaiveBayes(asked).answers([text for text, _ in asked])
     assert np.mean([word == own for word, (_, own) in zip(guessed, asked, strict=True)]) <= 0.5
@@ -203,7 +201,9 @@ def test_every_form_holds_all_views(folder: Path, tmp_path: Path) -> None:
         for line in (tmp_path / "jsonl" / f"{split}.jsonl").read_text("utf-8").splitlines()
     ]
     assert sorted(line["id"] for line in lines) == sorted(row["id"] for row in rows)
-    assert all((tmp_path / "jsonl" / lines[0]["images"][kind]).exists() for kind in ("rgb", "depth"))
+    assert all(
+        (tmp_path / "jsonl" / lines[0]["images"][kind]).exists() for kind in ("rgb", "depth")
+    )
     names = []
     for split in splits:
         with tarfile.open(tmp_path / "webdataset" / f"{split}-000000.tar") as tar:

@@ -97,6 +97,4 @@ def _is_good(seen: dict[str, NDArray[Any]], things: list[int]) -> bool:
     is_thing = np.isin(ids, things)
     large = (pixels >= _LEAST_SHARE * _SMALL**2) & is_thing
     covered = float(pixels[is_thing].sum()) / _SMALL**2
-    return (
-        near <= _MOST_NEAR and covered >= _LEAST_COVERED and int(large.sum()) >= _LEAST_THINGS
-    )
+    return near <= _MOST_NEAR and covered >= _LEAST_COVERED and int(large.sum()) >= _LEAST_THINGS

@@ -25,6 +25,12 @@ __all__ = ["ask"]
 
 #: Pixels of 256 x 256 from which a thing is clear, and the least part of it that must be seen.
 _LEAST_PIXELS, _MOST_HIDDEN = 200, 0.75
+#: Of doors and windows, of which a strip is not known as such.
+_LEAST_OPENING_PIXELS = 800
+#: The share of its surface from which a thing has one colour.
+_LEAST_ONE_COLOR = 0.6
+#: Openness up to which a thing is closed, and from which it is open.
+_CLOSED, _OPEN = 0.02, 0.7
 #: The least luma of things that are asked for their colour.
 _LEAST_LUMA = 0.06
 #: Shares of the picture's width: between things that are told apart, and from the lines between
@@ -79,6 +85,14 @@ def ask(world: World, records: Sequence[ViewRecord], *, most: int, seed: int) ->
                 pairs += 1
 
 
+#: A description by its noun and colours.
+_Kind = tuple[str, ...]
+
+
+def _kind(description: Form) -> _Kind:
+    return (description["noun"]["object"], *description["colors"])
+
+
 class _ClearThings:
     """The things of a record, and which of them are clear."""
 
@@ -92,20 +106,24 @@ class _ClearThings:
             thing
             for thing in row["things"]
             if "noun" in thing
-            and thing["pixels"] >= _LEAST_PIXELS * share
+            and thing["pixels"]
+            >= (_LEAST_OPENING_PIXELS if thing["is_opening"] else _LEAST_PIXELS) * share
             and thing["occlusion"] <= _MOST_HIDDEN
         ]
+        self.placed = {
+            (subject, other) for subject, name, other in row["relations"] if name in ("on", "in")
+        }
         self.nouns = {thing["id"]: thing["noun"] for thing in self.things}
         self.dark = {thing["id"] for thing in self.things if thing["luma"] < _LEAST_LUMA}
 
-    def shows(self, asked: Asked, named: dict[str, frozenset[int]]) -> bool:
+    def shows(self, asked: Asked, named: dict[_Kind, frozenset[int]]) -> bool:
         """Returns whether all that a question is about is clear in the picture, or not there."""
         ids: set[int] = set()
         for what in asked.of_all:
-            there = {number for number in named[json.dumps(what)] if number in self.pixels}
+            there = {number for number in named[_kind(what)] if number in self.pixels}
             ids |= there
         for what in asked.of_one:
-            there = {number for number in named[json.dumps(what)] if number in self.pixels}
+            there = {number for number in named[_kind(what)] if number in self.pixels}
             if len(there) != 1:
                 return False
             ids |= there
@@ -118,15 +136,25 @@ class _ClearThings:
         things = [thing for thing in self.things if thing["id"] in ids]
         middles = [(thing["box"][0] + thing["box"][2] / 2.0) / self.width for thing in things]
         if what == "apart":
-            return max(middles) - min(middles) >= _LEAST_APART
+            return bool(max(middles) - min(middles) >= _LEAST_APART)
         if what == "level":
             lows = [thing["center"][1] - thing["extents"][1] / 2.0 for thing in things]
             highs = [thing["center"][1] + thing["extents"][1] / 2.0 for thing in things]
-            return max(lows) < min(highs)
+            return bool(max(lows) < min(highs))
         if what == "side":
             # The middle third is ahead.
             lines = (1.0 / 3.0, 2.0 / 3.0)
-            return all(abs(x - line) >= _LEAST_ASIDE for x in middles for line in lines)
+            ends = [(thing["box"][0], thing["box"][0] + thing["box"][2]) for thing in things]
+            return all(abs(x - line) >= _LEAST_ASIDE for x in middles for line in lines) and all(
+                left > 0 and right < self.width for left, right in ends
+            )
+        if what == "plain":
+            return all(
+                thing["pattern"] is None and thing["color_share"] >= _LEAST_ONE_COLOR
+                for thing in things
+            )
+        if what == "settled":
+            return all(not _CLOSED < thing["openness"] < _OPEN for thing in things)
         return True
 
 
@@ -135,7 +163,7 @@ def _answers(
 ) -> list[dict[int, dict[str, Any]]]:
     """For each form its words and its answer in each view where all that it is about is clear."""
     descriptions = [what for one in asked for what in (*one.of_all, *one.of_one)]
-    unique = {json.dumps(what): what for what in descriptions}
+    unique = {_kind(what): what for what in descriptions}
     phrases = [{"noun_phrase": phrase(what)} for what in unique.values()]
     found = _native.world_answers(world.native, phrases, None, None, None)
     named = {
@@ -181,12 +209,21 @@ def _word(answer: dict[str, Any] | None, asked: Asked, view: _ClearThings) -> st
         numbers = answer["alternatives"]
         return asked.words[numbers[0]] if len(numbers) == 1 else None
     if "things" in answer:
+        if asked.clear == "placed" and not _is_placed(answer["things"], asked, view):
+            return None
         nouns = {
             view.nouns.get(thing["id"]) if thing["kind"] == "object" else None
             for thing in answer["things"]
         }
         return nouns.pop() if len(nouns) == 1 else None
     return None
+
+
+def _is_placed(places: Sequence[dict[str, Any]], asked: Asked, view: _ClearThings) -> bool:
+    """Returns whether the one thing that is asked for lies in or on all of some places."""
+    nouns = {what["noun"]["object"] for what in asked.of_one}
+    own = [number for number, noun in view.nouns.items() if noun in nouns]
+    return len(own) == 1 and all((own[0], place["id"]) in view.placed for place in places)
 
 
 def _matched(

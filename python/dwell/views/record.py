@@ -84,10 +84,11 @@ def view_record(
         ``things``: what has pixels in the image, the largest first: ``id``, ``name``,
         ``category``, ``pixels``, ``box`` (first column, first row, width, height), ``mask`` (COCO's
         run lengths), ``occlusion`` (the part that others hide, 0 to 1), ``luma`` (mean of the
-        picture, 0 to 1), and of large ones ``noun``, ``colors``, ``material``,
-        ``size``, ``openness``, ``switched_on``, ``distance_m``, ``center`` and ``extents`` of its box in the house, m, and
-        ``is_opening`` (doors, windows). Of things of less than
-        200 of 256 x 256 pixels nothing is asked and no relation told. ``captions``: by length
+        picture, 0 to 1), and of large ones ``noun``, ``colors``, ``material``, ``size``,
+        ``pattern``, ``color_share`` (of the largest),
+        ``openness``, ``switched_on``, ``distance_m``, ``center`` and ``extents`` of its box in the
+        house, m, and ``is_opening`` (doors, windows). Of things of less than 200 of 256 x 256
+        pixels nothing is asked and no relation told. ``captions``: by length
         ``text``, ``spans`` (``start``, ``end``, ``ids``, ``boxes``) and ``claims``.
         ``references``: ``id``, ``strategy``, ``text`` and ``spans``. ``relations``: subject,
         predicate, object.
@@ -96,7 +97,7 @@ def view_record(
     seen = world.render(
         **camera.viewer(), camera=lens, channels=[*IMAGES, "visible_objects", "boxes_2d"]
     )
-    images = {name: seen[name] for name in IMAGES}
+    images: dict[str, NDArray[Any]] = {name: seen[name] for name in IMAGES}
     least = _LEAST_PIXELS * (size / 256.0) ** 2
     rows = [row for row in seen["visible_objects"].tolist() if row[1] > 0]
     rows.sort(key=lambda row: (-row[1], row[0]))
@@ -151,6 +152,9 @@ def _facts(facts: dict[str, Any]) -> dict[str, Any]:
     told = {name: facts[name] for name in ("noun", "material", "size", "openness", "switched_on")}
     for name in ("center", "extents"):
         told[name] = [round(number, 3) for number in facts[name]]
+    told["pattern"] = facts["pattern"]
+    shares = [share for _, share in facts["colors"]]
+    told["color_share"] = round(max(shares, default=0.0), 3)
     told["colors"] = facts["spoken_colors"]
     told["distance_m"] = None if facts["distance_m"] is None else round(facts["distance_m"], 2)
     told["is_opening"] = facts["is_opening"]

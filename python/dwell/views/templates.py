@@ -6,6 +6,7 @@ To add one: a function here, and a line in :data:`TEMPLATES`.
 from __future__ import annotations
 
 import dataclasses
+import itertools
 from collections.abc import Callable, Iterator, Sequence
 from typing import Any, Literal
 
@@ -35,7 +36,9 @@ class Asked:
         needs_light: Whether the things must not be dark.
         clear: What else must be clear: ``apart``, that the two things are beside each other in the
             picture; ``level``, that one is as high as the other; ``side``, that no thing is near
-            the lines between left, ahead and right.
+            the lines between left, ahead and right, or cut off; ``plain``, that things have one
+            colour and no pattern; ``settled``, that they are open or closed, not half; ``placed``,
+            that a thing is in or on what the answer names.
         words: What the numbers of alternatives mean.
     """
 
@@ -43,7 +46,7 @@ class Asked:
     of_all: tuple[Form, ...] = ()
     of_one: tuple[Form, ...] = ()
     needs_light: bool = False
-    clear: Literal["", "apart", "level", "side"] = ""
+    clear: Literal["", "apart", "level", "side", "plain", "settled", "placed"] = ""
     words: tuple[str, ...] = ()
 
 
@@ -52,8 +55,8 @@ def _nouns(things: Sequence[Thing]) -> list[str]:
 
 
 def _pairs(things: Sequence[Thing]) -> Iterator[tuple[str, str]]:
-    """Nouns of things that are seen together in a view."""
-    nouns = _nouns(things)
+    """Nouns of things that are seen together in a view, without doors and windows."""
+    nouns = _nouns([thing for thing in things if not thing["is_opening"]])
     for first in nouns:
         for second in nouns:
             if first != second:
@@ -71,7 +74,8 @@ def _existence_color(things: Sequence[Thing]) -> Iterator[Asked]:
     for thing in things:
         if len(thing["colors"]) == 1:
             what = seen(thing["noun"], colors=thing["colors"])
-            yield Asked(whether(exists(what)), of_all=(described(thing["noun"]),), needs_light=True)
+            all_of_noun = (described(thing["noun"]),)
+            yield Asked(whether(exists(what)), of_all=all_of_noun, needs_light=True, clear="plain")
 
 
 def _count(things: Sequence[Thing]) -> Iterator[Asked]:
@@ -84,20 +88,20 @@ def _color(things: Sequence[Thing]) -> Iterator[Asked]:
     """What color is the chair?"""
     for noun in _nouns(things):
         form = {"question": {"attribute": {"kind": "color", "of": the(noun)}}}
-        yield Asked(form, of_one=(described(noun),), needs_light=True)
+        yield Asked(form, of_one=(described(noun),), needs_light=True, clear="plain")
 
 
 def _more(things: Sequence[Thing]) -> Iterator[Asked]:
     """Do you see more chairs than tables?"""
-    for first, second in _pairs(things):
+    for first, second in itertools.permutations(_nouns(things), 2):
         clause = {"more": {"more": seen(first), "than": seen(second)}}
         yield Asked(whether(clause), of_all=(described(first), described(second)))
 
 
-def _larger(things: Sequence[Thing]) -> Iterator[Asked]:
-    """Is the chair larger than the lamp?"""
+def _taller(things: Sequence[Thing]) -> Iterator[Asked]:
+    """Is the chair taller than the table?"""
     for first, second in _pairs(things):
-        clause = holds("larger_than", the(first), the(second))
+        clause = holds("taller_than", the(first), the(second))
         yield Asked(whether(clause), of_one=(described(first), described(second)))
 
 
@@ -136,14 +140,14 @@ def _place(things: Sequence[Thing]) -> Iterator[Asked]:
     """Where is the cup?"""
     for noun in _nouns(things):
         form = {"question": {"attribute": {"kind": "place", "of": the(noun)}}}
-        yield Asked(form, of_one=(described(noun),))
+        yield Asked(form, of_one=(described(noun),), clear="placed")
 
 
 def _open(things: Sequence[Thing]) -> Iterator[Asked]:
     """Is the door open?"""
     for noun in sorted({thing["noun"] for thing in things if thing["openness"] is not None}):
         clause = {"is": {"subject": the(noun), "quality": {"state": "open"}}}
-        yield Asked(whether(clause), of_one=(described(noun),))
+        yield Asked(whether(clause), of_one=(described(noun),), clear="settled")
 
 
 def _on(things: Sequence[Thing]) -> Iterator[Asked]:
@@ -160,7 +164,7 @@ TEMPLATES: dict[str, tuple[str, Callable[[Sequence[Thing]], Iterator[Asked]]]] =
     "count": ("count", _count),
     "color": ("attribute", _color),
     "more": ("comparison", _more),
-    "larger": ("comparison", _larger),
+    "taller": ("comparison", _taller),
     "left_of": ("relation", _side_of),
     "in_front_of": ("relation", _before),
     "next_to": ("relation", _next_to),
