@@ -131,6 +131,15 @@ class _ClearThings:
             return False
         return all(number in self.nouns for number in ids) and self._is_clear(asked.clear, ids)
 
+    def is_on(self, side: str, asked: Asked) -> bool:
+        """Returns whether a thing that is asked for is on a side of the picture."""
+        nouns = {what["noun"]["object"] for what in asked.of_all}
+        for thing in self.things:
+            x = (thing["box"][0] + thing["box"][2] / 2.0) / self.width
+            if thing["noun"] in nouns and (x < 1.0 / 3.0 if side == "on_left" else x > 2.0 / 3.0):
+                return True
+        return False
+
     def _is_clear(self, what: str, ids: set[int]) -> bool:
         """Returns whether where things are cannot be mistaken."""
         things = [thing for thing in self.things if thing["id"] in ids]
@@ -140,7 +149,8 @@ class _ClearThings:
         if what == "level":
             lows = [thing["center"][1] - thing["extents"][1] / 2.0 for thing in things]
             highs = [thing["center"][1] + thing["extents"][1] / 2.0 for thing in things]
-            return bool(max(lows) < min(highs))
+            is_placed = any((p, q) in self.placed for p in ids for q in ids)
+            return bool(max(lows) < min(highs)) and not is_placed
         if what == "side":
             # The middle third is ahead.
             lines = (1.0 / 3.0, 2.0 / 3.0)
@@ -154,7 +164,8 @@ class _ClearThings:
                 for thing in things
             )
         if what == "settled":
-            return all(not _CLOSED < thing["openness"] < _OPEN for thing in things)
+            openness = [thing["openness"] for thing in things]
+            return all(one is not None and not _CLOSED < one < _OPEN for one in openness)
         return True
 
 
@@ -200,6 +211,9 @@ def _word(answer: dict[str, Any] | None, asked: Asked, view: _ClearThings) -> st
     if answer is None or ("reason" in answer and answer.get("truth") is None):
         return None
     if "truth" in answer:
+        # The middle of what is seen of a thing may be elsewhere than that of the whole.
+        if asked.side and view.is_on(asked.side, asked) is not answer["truth"]:
+            return None
         return "yes" if answer["truth"] else "no"
     if "number" in answer:
         return str(answer["number"]) if answer["number"] <= _MOST_COUNTED else None

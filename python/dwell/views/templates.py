@@ -35,10 +35,12 @@ class Asked:
         of_one: Descriptions that must fit one thing in the picture, which is clear.
         needs_light: Whether the things must not be dark.
         clear: What else must be clear: ``apart``, that the two things are beside each other in the
-            picture; ``level``, that one is as high as the other; ``side``, that no thing is near
+            picture; ``level``, that one is as high as the other,
+            and neither lies in or on the other; ``side``, that no thing is near
             the lines between left, ahead and right, or cut off; ``plain``, that things have one
             colour and no pattern; ``settled``, that they are open or closed, not half; ``placed``,
             that a thing is in or on what the answer names.
+        side: On which side of the picture a thing is that makes the answer ``yes``.
         words: What the numbers of alternatives mean.
     """
 
@@ -47,6 +49,7 @@ class Asked:
     of_one: tuple[Form, ...] = ()
     needs_light: bool = False
     clear: Literal["", "apart", "level", "side", "plain", "settled", "placed"] = ""
+    side: Literal["", "on_left", "on_right"] = ""
     words: tuple[str, ...] = ()
 
 
@@ -130,10 +133,11 @@ def _next_to(things: Sequence[Thing]) -> Iterator[Asked]:
 
 def _side(things: Sequence[Thing]) -> Iterator[Asked]:
     """Is there a chair on your left?"""
+    sides: tuple[Literal["on_left", "on_right"], ...] = ("on_left", "on_right")
     for noun in _nouns(things):
-        for side in ("on_left", "on_right"):
-            what = seen(noun, modifiers=[modifier(side)])
-            yield Asked(whether(exists(what)), of_all=(described(noun),), clear="side")
+        for side in sides:
+            form = whether(exists(seen(noun, modifiers=[modifier(side)])))
+            yield Asked(form, of_all=(described(noun),), clear="side", side=side)
 
 
 def _place(things: Sequence[Thing]) -> Iterator[Asked]:
