@@ -146,6 +146,19 @@ def test_a_question_is_asked_twice_with_different_answers(records: list[ViewReco
                 assert asked["answer"] == str(answer["number"])
 
 
+def test_ways_and_failures_are_asked_of_the_house() -> None:
+    settings = ViewSettings(views=6, size=64, situations=True)
+    rows = [record.row for record in house_records(HOUSE, settings)]
+    asked = [one for row in rows for one in row["questions"] if one["evidence"] == "house"]
+    assert {one["kind"] for one in asked} & {"path", "failure"}
+    ways = {one["answer"] for one in asked if one["kind"] == "path"}
+    assert ways <= {"left", "right", "around", "not at all"}
+    answers: dict[int, set[str]] = {}
+    for one in asked:
+        answers.setdefault(one["pair"], set()).add(one["answer"])
+    assert all(len(both) == 2 for both in answers.values())
+
+
 def test_who_sees_no_picture_is_right_half_the_time(records: list[ViewRecord]) -> None:
     asked = [(one["text"], one["answer"]) for record in records for one in record.row["questions"]]
     # Whatever is answered by the words alone, of each pair one is wrong.

@@ -27,6 +27,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
     make.add_argument(
         "--questions", type=count, default=2, help="of each template in a view at most (default 2)"
     )
+    make.add_argument(
+        "--situations",
+        action="store_true",
+        help="also ask which way to turn and why an action fails, which takes a while",
+    )
     make.add_argument("--seed", type=count, default=0)
     make.add_argument(
         "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
@@ -59,7 +64,7 @@ def _make(args: argparse.Namespace) -> int:
     from dwell.house_list import HouseList
     from dwell.views.dataset import ViewSettings, make
 
-    settings = ViewSettings(args.views, args.size, args.seed, args.questions)
+    settings = ViewSettings(args.views, args.size, args.seed, args.questions, args.situations)
     houses = HouseList(args.houses)
     job = {"command": "views make", "houses": args.houses, **vars(settings)}
     refuse_other(args.out, job)

@@ -43,15 +43,21 @@ class HeldCamera:
         position: Where it is, m.
         yaw_deg: Where it looks, positive to the left.
         pitch_deg: Positive up.
+        eye_height_m: How high it is above where its holder stands.
     """
 
     position: tuple[float, float, float]
     yaw_deg: float
     pitch_deg: float
+    eye_height_m: float = 1.6
 
     def viewer(self) -> dict[str, Any]:
         """As :meth:`dwell.World.holds` takes it."""
-        return dataclasses.asdict(self)
+        return {
+            "position": self.position,
+            "yaw_deg": self.yaw_deg,
+            "pitch_deg": self.pitch_deg,
+        }
 
 
 def held_cameras(world: World, count: int, seed: int) -> Iterator[HeldCamera]:
@@ -78,7 +84,10 @@ def held_cameras(world: World, count: int, seed: int) -> Iterator[HeldCamera]:
         position = (round(eye[0], 3), round(eye[1], 3), round(eye[2], 3))
         down, level = _PITCHES_DEG
         camera = HeldCamera(
-            position, round(360.0 * turn - 180.0, 1), round(down + (level - down) * tilt, 1)
+            position,
+            round(360.0 * turn - 180.0, 1),
+            round(down + (level - down) * tilt, 1),
+            round(position[1] - float(place[1]), 3),
         )
         if world.house.native.room_at(position) is None:
             continue

@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
-from dwell.arguments import integer_in_range
+from dwell.arguments import boolean, integer_in_range
 from dwell.files import lines, open_file, parse_json
 from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
@@ -45,13 +45,15 @@ class ViewSettings:
         views: Of each house, 1 to 1000; half of them by lamp light in houses of seeds.
         size: Edges of the images, pixels, 64 to 1024.
         seed: Draws cameras, wordings and questions.
-        questions: Of each kind in a view at most.
+        questions: Of each template in a view at most.
+        situations: Whether ways and failed actions are asked for, too; a tenth of a second each.
     """
 
     views: int = 8
     size: int = 256
     seed: int = 0
     questions: int = 2
+    situations: bool = False
 
     def __post_init__(self) -> None:
         """Checks the fields.
@@ -63,6 +65,7 @@ class ViewSettings:
         integer_in_range("size", self.size, low=64, high=1024)
         integer_in_range("seed", self.seed)
         integer_in_range("questions", self.questions, low=0, high=1000)
+        boolean("situations", self.situations)
 
 
 def split_of(house: str) -> str:
@@ -110,7 +113,13 @@ def house_records(name: str, settings: ViewSettings) -> list[ViewRecord]:
     if not found:
         raise ConfigError(f"{name}: no place shows three things")
     if settings.questions:
-        ask(worlds[0], found, most=settings.questions, seed=settings.seed)
+        ask(
+            worlds[0],
+            found,
+            most=settings.questions,
+            seed=settings.seed,
+            situations=settings.situations,
+        )
     return found
 
 

@@ -15,6 +15,7 @@ import numpy as np
 
 from dwell import _native
 from dwell.views.forms import Form, phrase
+from dwell.views.situations import SITUATIONS
 from dwell.views.templates import TEMPLATES, Asked
 
 if TYPE_CHECKING:
@@ -42,16 +43,25 @@ _MOST_FORMS, _MOST_ALIKE = 60, 2
 _MOST_COUNTED = 6
 
 
-def ask(world: World, records: Sequence[ViewRecord], *, most: int, seed: int) -> None:
+def ask(
+    world: World,
+    records: Sequence[ViewRecord],
+    *,
+    most: int,
+    seed: int,
+    situations: bool = False,
+) -> None:
     """Adds questions to the records of one house.
 
     Args:
         world: The house, in a state that all records share.
-        records: Views of it; each gets ``questions`` in its row: ``template``, ``kind``, ``text``,
-            ``answer``, ``pair`` (the same of two questions), ``form`` and ``spans`` (the noun
-            phrases with the ids of what the image shows of them).
+        records: Views of it; each gets ``questions`` in its row: ``template``, ``kind``,
+            ``evidence`` (``picture``, or ``house`` of situations), ``text``, ``answer``, ``pair``
+            (the same of two questions), ``form`` and ``spans`` (the noun phrases with the ids of
+            what the image shows of them).
         most: Questions of each template that a view gets.
         seed: Draws forms and pairs.
+        situations: Whether ways and failed actions are asked for, too.
     """
     rng = np.random.default_rng([seed, len(records)])
     clear = [_ClearThings(record) for record in records]
@@ -65,24 +75,46 @@ def ask(world: World, records: Sequence[ViewRecord], *, most: int, seed: int) ->
         keys = [keys[k] for k in rng.permutation(len(keys))[:_MOST_FORMS]]
         chosen = [forms[key] for key in keys]
         answers = _answers(world, clear, chosen)
-        left = Counter({k: most for k in range(len(records))})
-        for asked, rows in zip(chosen, answers, strict=True):
-            for first, second in _matched(rows, left, rng):
-                for k in (first, second):
-                    row = rows[k]
-                    records[k].row["questions"].append(
-                        {
-                            "template": template,
-                            "kind": kind,
-                            "text": row["text"],
-                            "answer": row["word"],
-                            "pair": pairs,
-                            "form": asked.form,
-                            "spans": row["spans"],
-                        }
-                    )
-                    left[k] -= 1
-                pairs += 1
+        rows_of = [(asked.form, rows) for asked, rows in zip(chosen, answers, strict=True)]
+        pairs = _write_pairs(records, (template, kind, "picture"), rows_of, most, pairs, rng)
+    for kind, told in SITUATIONS.items() if situations else ():
+        rows_of = [
+            (form, {k: {"text": text, "word": word, "spans": []} for k, word in words.items()})
+            for form, text, words in told(world, records)
+        ]
+        pairs = _write_pairs(records, (kind, kind, "house"), rows_of, most, pairs, rng)
+
+
+def _write_pairs(
+    records: Sequence[ViewRecord],
+    about: tuple[str, str, str],
+    rows_of: Sequence[tuple[Form, dict[int, dict[str, Any]]]],
+    most: int,
+    pairs: int,
+    rng: np.random.Generator,
+) -> int:
+    """Adds pairs of questions of one template to the records; the number of pairs so far."""
+    template, kind, evidence = about
+    left = Counter({k: most for k in range(len(records))})
+    for form, rows in rows_of:
+        for both in _matched(rows, left, rng):
+            for k in both:
+                row = rows[k]
+                records[k].row["questions"].append(
+                    {
+                        "template": template,
+                        "kind": kind,
+                        "evidence": evidence,
+                        "text": row["text"],
+                        "answer": row["word"],
+                        "pair": pairs,
+                        "form": form,
+                        "spans": row["spans"],
+                    }
+                )
+                left[k] -= 1
+            pairs += 1
+    return pairs
 
 
 #: A description by its noun and colours.

@@ -46,7 +46,8 @@ class ViewRecord:
 
     Attributes:
         row: What is written as JSON: ``id``, ``house``, ``light``, ``camera`` (``width``,
-            ``height``, ``fov_deg``, ``position``, ``yaw_deg``, ``pitch_deg``), ``room``,
+            ``height``, ``fov_deg``, ``position``, ``yaw_deg``, ``pitch_deg``,
+            ``eye_height_m``), ``room``,
             ``things``, ``captions``, ``references``, ``relations``, ``questions``.
         images: ``rgb`` (height, width, 3) uint8; ``depth`` (height, width, 1) float32, m;
             ``instance`` (height, width, 1) int32; ``normals`` (height, width, 3) float32 in the
@@ -130,7 +131,7 @@ def view_record(
         "id": id,
         "house": world.house.name,
         "light": light,
-        "camera": {"width": size, "height": size, "fov_deg": 90.0, **camera.viewer()},
+        "camera": {"width": size, "height": size, "fov_deg": 90.0, **dataclasses.asdict(camera)},
         "room": None if said["room"] is None else world.house.info()["rooms"][said["room"]]["name"],
         "things": things,
         "captions": {
