@@ -69,12 +69,14 @@ __all__ = [
     "texture",
     "vocabulary",
     "vocal_efforts",
+    "world_answers",
     "world_attributes",
     "world_check_text",
     "world_color_names",
     "world_graph_json",
     "world_heard",
     "world_holds",
+    "world_judge_text",
     "world_person_hand",
     "world_person_joints",
     "world_refer",
@@ -84,6 +86,7 @@ __all__ = [
     "world_select",
     "world_set_gesture",
     "world_speaks",
+    "world_view_words",
 ]
 
 __version__: str
@@ -542,6 +545,21 @@ def world_refer(
 
 def world_check_text(world: World, text: str, viewer: object, agent: int | None) -> dict[str, Any]:
     """A sentence read, checked and grounded."""
+
+def world_judge_text(
+    world: World, text: str, viewer: object, agent: int | None, of_view: bool
+) -> list[dict[str, Any]]:
+    """The claims of a text, each with its verdict; with ``of_view`` of what is seen alone."""
+
+def world_answers(
+    world: World, forms: Sequence[object], viewer: object, agent: int | None, seed: int | None
+) -> list[dict[str, Any] | None]:
+    """For each form ``text``, ``spans`` and ``answer`` as of a check; None where there are no words for it."""
+
+def world_view_words(
+    world: World, viewer: object, ids: Sequence[int], names: Sequence[str], seed: int | None
+) -> dict[str, Any]:
+    """``captions`` by length, and of the things of ``ids``: ``things``, ``references``, ``relations`` by the predicates of ``names``; ``room``."""
 
 def predicates_json() -> str:
     """``predicates`` and ``orders`` with their definitions: one JSON object."""

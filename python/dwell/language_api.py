@@ -5,7 +5,7 @@ from __future__ import annotations
 from typing import Any, Literal, overload
 
 from dwell import ConfigError, _native
-from dwell.arguments import integer_in_range, quoted
+from dwell.arguments import choice, integer_in_range, quoted
 from dwell.arguments import text as checked_text
 from dwell.grounded_text import Length, Style, Text, texts
 from dwell.relation_api import RelationApi, Thing, Viewer, thing_argument, viewer_argument
@@ -17,6 +17,8 @@ _READ_BY = {
     "to": ("route",),
     "since": ("changes",),
 }
+#: What may become of a claim of a text.
+CLAIM_STATUSES = ("true", "false", "undecided", "not_understood", "no_claim")
 #: The levels that read none of them.
 _WITHOUT = ("object", "room", "house", "graph", "instructions")
 
@@ -226,3 +228,63 @@ class LanguageApi(RelationApi):
             self._native, sentence, viewer_argument(viewer), listener
         )
         return found
+
+    def check_text(
+        self,
+        text: str,
+        *,
+        viewer: Viewer | None = None,
+        agent: int | None = None,
+        scope: Literal["house", "view"] = "house",
+    ) -> dict[str, Any]:
+        """Judges each claim of a text that somebody else wrote: a caption, a description.
+
+        A sentence that is not understood as a whole is cut at commas and conjunctions, and what is
+        understood of it is judged. "It" stands for the subject of the claim before.
+
+        Args:
+            text: At most 65,536 bytes; a sentence has at most 80 words.
+            viewer: As of :meth:`check`.
+            agent: Who "you" is.
+            scope: ``view``: the text tells what ``viewer`` sees: things out of sight are none of
+                it, so that "there is a lamp" is false where no lamp is in sight.
+
+        Returns:
+            ``claims``, in the order of the text: ``start``, ``end`` and ``text`` (the words that
+            say it; the sentence where these cannot be told apart), ``status`` (``true``, ``false``,
+            ``undecided``, ``not_understood``, or ``no_claim`` of requests and questions),
+            ``reason`` of the last three, ``said``, ``form`` and ``phrases`` as :meth:`check` has
+            them, ``witnesses`` (``predicate``, ``things``, ``truth``) that decided, and
+            ``holds_elsewhere``: it is true of the house, but not of what is seen. ``counts`` of
+            each status; ``false_share``: of the claims that are true or false those that are
+            false, 0 to 1, ``None`` where there are none.
+
+        Raises:
+            ConfigError: The text is too long; ``scope`` is ``view`` without a viewer.
+
+        Examples:
+            >>> import dwell
+            >>> world = dwell.World("builtin:apartment", agents=0)
+            >>> found = world.check_text("There is a sofa in the living room, and the sofaa barks.")
+            >>> [(claim["text"], claim["status"]) for claim in found["claims"]]
+            [('There is a sofa in the living room', 'true'), ('the sofaa barks.', 'not_understood')]
+        """
+        if choice("scope", scope, ("house", "view")) == "view" and viewer is None and agent is None:
+            raise ConfigError("scope is 'view' without a viewer; expected viewer or agent")
+        listener = None if agent is None else integer_in_range("agent", agent, high=2**31 - 1)
+        claims: list[dict[str, Any]] = _native.world_judge_text(
+            self._native,
+            checked_text("text", text),
+            viewer_argument(viewer),
+            listener,
+            scope == "view",
+        )
+        counts = {status: 0 for status in CLAIM_STATUSES}
+        for claim in claims:
+            counts[claim["status"]] += 1
+        judged = counts["true"] + counts["false"]
+        return {
+            "claims": claims,
+            "counts": counts,
+            "false_share": counts["false"] / judged if judged else None,
+        }

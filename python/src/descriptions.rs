@@ -61,7 +61,8 @@ pub(crate) fn char_offset(text: &str, byte: usize) -> usize {
     }
 }
 
-fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
+/// The noun phrases of a text by its letters, with the ids of their things.
+pub(crate) fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
     let spans = phrases.iter().map(|phrase| {
         let ThingIds { ids, rooms } = ThingIds::of(house, &phrase.terms);
         json!({

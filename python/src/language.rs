@@ -35,20 +35,32 @@ impl WorldAccess<'_> {
     }
 
     /// A term by its kind, the sensors' id or its number, and its name.
-    fn term_json(&self, term: Term) -> Value {
-        let house = self.world.house();
-        let (kind, id) = match term {
-            Term::Object(id) => ("object", house.entity_of_object(id).0),
-            Term::Structure(id) => ("structure", house.entity_of_structure(id).0),
-            Term::Agent(id) => ("agent", house.entity_of_agent(id).0),
-            Term::Room(id) => ("room", id.index() as i32),
-            Term::Storey(id) => ("storey", id.index() as i32),
-            Term::Part(id) => ("part", id.index() as i32),
+    pub(crate) fn term_json(&self, term: Term) -> Value {
+        let kind = match term {
+            Term::Object(_) => "object",
+            Term::Structure(_) => "structure",
+            Term::Agent(_) => "agent",
+            Term::Room(_) => "room",
+            Term::Storey(_) => "storey",
+            Term::Part(_) => "part",
         };
-        json!({"kind": kind, "id": id, "name": self.name_of(term)})
+        json!({"kind": kind, "id": self.entity_id(term), "name": self.name_of(term)})
     }
 
-    fn terms_json(&self, terms: &[Term]) -> Value {
+    /// The sensors' id of a thing, or the number of a room, storey or part.
+    pub(crate) fn entity_id(&self, term: Term) -> i32 {
+        let house = self.world.house();
+        match term {
+            Term::Object(id) => house.entity_of_object(id).0,
+            Term::Structure(id) => house.entity_of_structure(id).0,
+            Term::Agent(id) => house.entity_of_agent(id).0,
+            Term::Room(id) => id.index() as i32,
+            Term::Storey(id) => id.index() as i32,
+            Term::Part(id) => id.index() as i32,
+        }
+    }
+
+    pub(crate) fn terms_json(&self, terms: &[Term]) -> Value {
         terms.iter().map(|term| self.term_json(*term)).collect()
     }
 
@@ -67,7 +79,7 @@ impl WorldAccess<'_> {
         })
     }
 
-    fn answer(&self, answer: &QuestionAnswer) -> Value {
+    pub(crate) fn answer(&self, answer: &QuestionAnswer) -> Value {
         match answer {
             QuestionAnswer::Truth(verdict) => self.verdict(verdict),
             QuestionAnswer::Things(terms) => json!({"things": self.terms_json(terms)}),
@@ -79,7 +91,7 @@ impl WorldAccess<'_> {
     }
 }
 
-fn truth(truth: Truth) -> Value {
+pub(crate) fn truth(truth: Truth) -> Value {
     truth.value().map_or(Value::Null, Value::Bool)
 }
 

@@ -38,6 +38,7 @@ mod relations;
 mod speech;
 mod stated_episodes;
 mod values;
+mod view_words;
 mod world;
 mod world_access;
 
@@ -86,6 +87,9 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_function(wrap_pyfunction!(language::language_say, module)?)?;
     module.add_function(wrap_pyfunction!(language::world_refer, module)?)?;
     module.add_function(wrap_pyfunction!(language::world_check_text, module)?)?;
+    module.add_function(wrap_pyfunction!(view_words::world_answers, module)?)?;
+    module.add_function(wrap_pyfunction!(view_words::world_judge_text, module)?)?;
+    module.add_function(wrap_pyfunction!(view_words::world_view_words, module)?)?;
     module.add_function(wrap_pyfunction!(relations::predicates_json, module)?)?;
     module.add_function(wrap_pyfunction!(speech::vocal_efforts, module)?)?;
     module.add_function(wrap_pyfunction!(speech::world_heard, module)?)?;

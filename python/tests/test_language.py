@@ -102,5 +102,5 @@ def test_the_command_prints_a_verdict_for_each_sentence(
     assert 'unknown word "bedd"' in err
     code, out, _ = printed("--json", "--view", "0", "Is there a bed?")
     found: dict[str, Any] = json.loads(out)
-    assert found["rows"][0]["answer"]["truth"] is True
+    assert found["rows"][0]["claims"][0]["answer"]["truth"] is True
     assert printed("--view", "99", "There is a bed.")[0] == 1

@@ -10,6 +10,7 @@
 
 mod ambiguity;
 mod answer;
+mod claims;
 mod description;
 mod distance;
 mod quantify;
@@ -19,6 +20,7 @@ mod witness;
 
 pub use ambiguity::AmbiguousPhrase;
 pub use answer::QuestionAnswer;
+pub use claims::{ClaimScope, ClaimVerdict, JudgedClaim};
 pub(crate) use distance::rounded_distance_m;
 pub(crate) use room::rounded_area_m2;
 pub use text::{CheckedText, GroundedPhrase};

@@ -48,7 +48,7 @@ impl Checker<'_> {
             .forms
             .into_iter();
         let form = readings.next().ok_or(ParseError::Empty)?;
-        let answer = self.answer_form(&form);
+        let answer = self.answer_to(&form);
         Ok(CheckedText {
             form,
             others: readings.collect(),
@@ -58,7 +58,7 @@ impl Checker<'_> {
 
     /// The verdict on a claim, the answer to a question, or the things of a noun phrase. Of several forms the answer to the last one
     /// that has one; `None` for requests.
-    pub(crate) fn answer_form(&self, form: &Form) -> Option<QuestionAnswer> {
+    pub fn answer_to(&self, form: &Form) -> Option<QuestionAnswer> {
         match form {
             Form::Claim(clause) if form.asks_for_parts() => {
                 let mut verdict = self.check(clause);
@@ -73,7 +73,7 @@ impl Checker<'_> {
             Form::Question(question) => Some(self.answer(question)),
             Form::NounPhrase(phrase) => Some(QuestionAnswer::Things(self.denotation(phrase))),
             Form::Request(_) => None,
-            Form::Several(forms) => forms.iter().rev().find_map(|form| self.answer_form(form)),
+            Form::Several(forms) => forms.iter().rev().find_map(|form| self.answer_to(form)),
         }
     }
 

@@ -67,17 +67,20 @@ struct ViewContents {
     elsewhere: BTreeMap<RoomId, Vec<ObjectId>>,
 }
 
+/// How things in view are referred to, of those that were looked up so far.
+type ThingNames = RefCell<BTreeMap<ObjectId, Option<Description>>>;
+
 struct ViewTeller<'a, 'b> {
     writer: TextWriter<'b>,
     checker: &'b Checker<'a>,
     viewer: Viewer,
-    survey: ViewSurvey,
+    survey: &'b ViewSurvey,
     style: TextStyle,
     room: Option<RoomId>,
     /// The things worth telling, ascending.
     told: Vec<ObjectId>,
     /// How things are referred to.
-    names: RefCell<BTreeMap<ObjectId, Option<Description>>>,
+    names: &'b ThingNames,
 }
 
 impl ViewTeller<'_, '_> {
@@ -96,7 +99,7 @@ impl ViewTeller<'_, '_> {
             return known.clone();
         }
         // A place in an order, or beside something small, is a clumsy name for what the text tells of anyway.
-        let name = refer_in_view(self.checker, &self.survey, object);
+        let name = refer_in_view(self.checker, self.survey, object);
         let is_carried = |own: &Modifier| ["in", "on"].contains(&own.predicate.as_str());
         let name =
             name.filter(|own| own.selection.is_none() && own.modifiers.iter().all(is_carried));
@@ -417,27 +420,45 @@ pub fn describe_view(
     };
     let checker = Checker::new(scene, listener);
     let survey = ViewSurvey::of(scene, &viewer);
+    let mut texts = describe_views(&checker, &survey, &[options]);
+    texts.pop().unwrap_or_default()
+}
+
+/// As [`describe_view`], of what a checker's listener sees in `survey`: a text for each of `options`.
+pub fn describe_views(
+    checker: &Checker<'_>,
+    survey: &ViewSurvey,
+    options: &[TextOptions],
+) -> Vec<GroundedText> {
+    let (scene, listener) = (checker.scene(), checker.listener());
+    let Some(viewer) = listener.viewer else {
+        return vec![GroundedText::default(); options.len()];
+    };
     let room = match listener.agent {
         Some(agent) => scene.room_of_agent(agent),
         None => scene.house().room_at(viewer.world_from_camera.position),
     };
-    let mut teller = ViewTeller {
-        writer: TextWriter::new(&checker, options.wording),
-        checker: &checker,
-        viewer,
-        style: options.style,
-        room,
-        told: Vec::new(),
-        names: RefCell::default(),
-        survey,
-    };
-    let told = teller.survey.objects.iter().filter(|(object, own)| {
-        own.share >= LEAST_SHARE
-            && own.unhidden >= LEAST_UNHIDDEN
-            && scene.holder(**object).is_none()
-            && teller.holds("visible", **object)
+    let names = ThingNames::default();
+    let texts = options.iter().map(|options| {
+        let mut teller = ViewTeller {
+            writer: TextWriter::new(checker, options.wording),
+            checker,
+            viewer,
+            style: options.style,
+            room,
+            told: Vec::new(),
+            names: &names,
+            survey,
+        };
+        let told = survey.objects.iter().filter(|(object, own)| {
+            own.share >= LEAST_SHARE
+                && own.unhidden >= LEAST_UNHIDDEN
+                && scene.holder(**object).is_none()
+                && teller.holds("visible", **object)
+        });
+        teller.told = told.map(|(object, _)| *object).collect();
+        teller.say(&ViewLimits::of(options.length));
+        teller.writer.finish()
     });
-    teller.told = told.map(|(object, _)| *object).collect();
-    teller.say(&ViewLimits::of(options.length));
-    teller.writer.finish()
+    texts.collect()
 }

@@ -56,7 +56,7 @@ pub fn reply(checker: &Checker<'_>, question: &Form, meant: Term) -> Reply {
         return Reply::undecided();
     };
     let about = question.with_phrase(&Phrase::Pronoun, &Phrase::Id(id));
-    match checker.answer_form(&about) {
+    match checker.answer_to(&about) {
         Some(answer) => Reply::of(scene, &answer),
         None => Reply::not_understood(),
     }

@@ -25,6 +25,7 @@ mod sets;
 mod to_tree;
 mod verb_phrases;
 
+pub(crate) use read::sentence_places;
 pub use read::{
     MAX_TEXT_BYTES, MAX_WORDS, ParseError, Readings, SentenceError, SentenceReadings, UnknownWord,
 };

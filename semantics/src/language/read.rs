@@ -116,7 +116,7 @@ pub struct SentenceError {
 }
 
 /// The places of the sentences of a text: each ends with a mark before a space, or with a line.
-fn sentences(text: &str) -> Vec<(usize, usize)> {
+pub(crate) fn sentence_places(text: &str) -> Vec<(usize, usize)> {
     let mut found = Vec::new();
     let mut start = 0;
     let mut letters = text.char_indices().peekable();
@@ -148,7 +148,7 @@ impl Language {
     /// [`SentenceError`] of the first sentence that has none.
     pub fn read_text(&self, text: &str) -> Result<Vec<SentenceReadings>, SentenceError> {
         let mut read: Vec<SentenceReadings> = Vec::new();
-        for (start, end) in sentences(text) {
+        for (start, end) in sentence_places(text) {
             interrupt::unwind_if_cancelled();
             let fault = |error| SentenceError {
                 start,

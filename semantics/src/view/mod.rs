@@ -5,5 +5,5 @@ mod strategy;
 mod survey;
 
 pub use refer::refer_in_view;
-pub use strategy::{ReferStrategy, refer_to};
+pub use strategy::{ReferStrategy, refer_by_survey, refer_to};
 pub use survey::{Sighting, ViewSurvey};

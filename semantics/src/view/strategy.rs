@@ -50,6 +50,18 @@ pub fn refer_to(
     target: ObjectId,
     strategy: ReferStrategy,
 ) -> Option<Description> {
+    let viewer = checker.listener().viewer.as_ref();
+    let survey = viewer.map(|viewer| ViewSurvey::of(checker.scene(), viewer));
+    refer_by_survey(checker, survey.as_ref(), target, strategy)
+}
+
+/// As [`refer_to`], where what the listener sees is known.
+pub fn refer_by_survey(
+    checker: &Checker<'_>,
+    survey: Option<&ViewSurvey>,
+    target: ObjectId,
+    strategy: ReferStrategy,
+) -> Option<Description> {
     let scene = checker.scene();
     let denotes = |own: &Description| {
         interrupt::unwind_if_cancelled();
@@ -70,13 +82,9 @@ pub fn refer_to(
             related.into_iter().find(denotes)
         }
     };
-    let shortest = || {
-        let viewer = checker.listener().viewer.as_ref();
-        let survey = viewer.map(|viewer| ViewSurvey::of(scene, viewer));
-        match survey.filter(|survey| survey.objects.contains_key(&target)) {
-            Some(survey) => refer_in_view(checker, &survey, target),
-            None => refer(scene, target).filter(denotes),
-        }
+    let shortest = || match survey.filter(|survey| survey.objects.contains_key(&target)) {
+        Some(survey) => refer_in_view(checker, survey, target),
+        None => refer(scene, target).filter(denotes),
     };
     found.or_else(shortest)
 }

@@ -1,0 +1,256 @@
+"""Data sets of views: made house by house, each whole or not at all."""
+
+from __future__ import annotations
+
+import dataclasses
+import itertools
+import json
+import os
+import re
+import shutil
+import zlib
+from collections import deque
+from collections.abc import Callable, Iterator, Sequence
+from concurrent.futures import Future, ThreadPoolExecutor
+from pathlib import Path
+from typing import Any
+
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell import ConfigError, DwellError
+from dwell.arguments import boolean, integer_in_range
+from dwell.files import lines, open_file, parse_json
+from dwell.house_list import HouseList
+from dwell.views.cameras import held_cameras
+from dwell.views.questions import ask
+from dwell.views.record import ViewRecord, view_record
+
+__all__ = ["LIGHTS", "ViewSettings", "house_records", "make", "records", "split_of"]
+
+#: Hours at which a generated house is seen in each light, local solar time.
+LIGHTS: dict[str, float] = {"day": 12.0, "lamp": 22.0}
+#: The file of a house's records; it is there when all else is.
+_RECORDS = "records.jsonl"
+_SEED = re.compile(r"seed:([0-9]+)")
+#: Depths in PNG are whole millimetres, up to what 16 bits hold.
+_MM_PER_M, _MOST_MM = 1000.0, 65_535.0
+
+
+@dataclasses.dataclass(frozen=True)
+class ViewSettings:
+    """What a data set of views is made of.
+
+    Attributes:
+        views: Of each house, 1 to 1000; half of them by lamp light in houses of seeds.
+        size: Edges of the images, pixels, 64 to 1024.
+        seed: Draws cameras, wordings and questions.
+        questions: Of each template in a view at most.
+        situations: Whether ways and failed actions are asked for, too; a tenth of a second each.
+    """
+
+    views: int = 8
+    size: int = 256
+    seed: int = 0
+    questions: int = 2
+    situations: bool = False
+
+    def __post_init__(self) -> None:
+        """Checks the fields.
+
+        Raises:
+            ConfigError: One is out of its range.
+        """
+        integer_in_range("views", self.views, low=1, high=1000)
+        integer_in_range("size", self.size, low=64, high=1024)
+        integer_in_range("seed", self.seed)
+        integer_in_range("questions", self.questions, low=0, high=1000)
+        boolean("situations", self.situations)
+
+
+def split_of(house: str) -> str:
+    """The part of a house: ``train``, ``val`` or ``test``; of others than seeds by their name."""
+    from dwell.house import split_of_seed
+
+    seed = _SEED.match(house)
+    if seed:
+        return split_of_seed(int(seed[1]))
+    return (*["train"] * 8, "val", "test")[zlib.crc32(house.encode()) % 10]
+
+
+def house_records(name: str, settings: ViewSettings) -> list[ViewRecord]:
+    """The records of one house, with questions that are balanced among its views.
+
+    Raises:
+        DwellError: It cannot be opened, or nobody can stand in it.
+    """
+    from dwell.house import House
+    from dwell.world import World
+
+    lights = list(LIGHTS) if _SEED.match(name) and "time_of_day" not in name else ["own"]
+    worlds = []
+    for light in lights:
+        lit = name
+        if light != "own":
+            lit += ("&" if "?" in name else "?") + f"time_of_day={LIGHTS[light]:g}"
+        worlds.append(World(House.open(lit), agents=0))
+    found = []
+    cameras = held_cameras(worlds[0], settings.views, settings.seed)
+    for k, camera in enumerate(cameras):
+        which = k % len(worlds)
+        # Each view has wordings of its own.
+        seed = (settings.seed + 1_000_003 * k) % 2**63
+        record = view_record(
+            worlds[which],
+            camera,
+            id=f"{k:03}",
+            light=lights[which],
+            size=settings.size,
+            seed=seed,
+        )
+        record.row |= {"house": name, "split": split_of(name)}
+        found.append(record)
+    if not found:
+        raise ConfigError(f"{name}: no place shows three things")
+    if settings.questions:
+        ask(
+            worlds[0],
+            found,
+            most=settings.questions,
+            seed=settings.seed,
+            situations=settings.situations,
+        )
+    return found
+
+
+def make(
+    houses: HouseList,
+    out: Path,
+    settings: ViewSettings,
+    *,
+    shard: tuple[int, int] = (0, 1),
+    threads: int = 1,
+    on_skip: Callable[[str, str], None] | None = None,
+) -> Iterator[tuple[int, str, int]]:
+    """Makes what is missing of the houses of a shard, in order.
+
+    A house stands in its folder whole or not at all, so what was stopped goes on. Names of ranges
+    are made one by one.
+
+    Args:
+        houses: All houses of the data set.
+        out: Its folder.
+        settings: What is made.
+        shard: Which of how many parts, from 0.
+        threads: Houses at a time.
+        on_skip: Is told a house that cannot be used, and why.
+
+    Yields:
+        The number of each house, its name, and how many records were made now; 0 where it was there
+        already, or was skipped.
+    """
+    which, shards = shard
+    todo = ((k, houses[k]) for k in range(which, len(houses), shards))
+    ahead: deque[tuple[int, str, Future[int | str] | None]] = deque()
+    pool = ThreadPoolExecutor(threads)
+    try:
+        while True:
+            for k, name in itertools.islice(todo, 2 * threads - len(ahead)):
+                folder = house_folder(out, k)
+                is_there = (folder / _RECORDS).exists()
+                job = None if is_there else pool.submit(_make_house, name, k, folder, settings)
+                ahead.append((k, name, job))
+            if not ahead:
+                return
+            k, name, job = ahead.popleft()
+            made = 0 if job is None else job.result()
+            if isinstance(made, str):
+                if on_skip is not None:
+                    on_skip(name, made)
+                made = 0
+            yield k, name, made
+    finally:
+        pool.shutdown(cancel_futures=True)
+
+
+def house_folder(out: Path, number: int) -> Path:
+    """The folder of a house by its number; at most a thousand stand side by side."""
+    return out / "views" / f"{number // 1000:05}" / f"{number:08}"
+
+
+def _make_house(name: str, number: int, folder: Path, settings: ViewSettings) -> int | str:
+    """Makes and writes a house; how many records, or why there are none."""
+    try:
+        made = house_records(name, settings)
+    except OSError as error:
+        if not isinstance(error, DwellError):
+            raise
+        return str(error)
+    except DwellError as error:
+        return str(error)
+    draft = folder.with_name(f".{folder.name}.part")
+    shutil.rmtree(draft, ignore_errors=True)
+    draft.mkdir(parents=True)
+    rows = []
+    for record in made:
+        record.row["id"] = f"{number:08}-{record.row['id']}"
+        record.row["images"] = _write_images(draft, record)
+        rows.append(json.dumps(record.row, ensure_ascii=False) + "\n")
+    (draft / _RECORDS).write_text("".join(rows), "utf-8")
+    shutil.rmtree(folder, ignore_errors=True)
+    os.replace(draft, folder)
+    return len(made)
+
+
+def _write_images(folder: Path, record: ViewRecord) -> dict[str, str]:
+    from PIL import Image
+
+    names = {}
+    for kind, image in png_images(record.images).items():
+        names[kind] = f"{record.row['id']}.{kind}.png"
+        Image.fromarray(image).save(folder / names[kind], compress_level=1)
+    return names
+
+
+def png_images(images: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
+    """Images as a PNG holds them.
+
+    Returns:
+        ``rgb`` as it is; ``depth`` (height, width) uint16, mm, 65535 for all beyond; ``instance``
+        (height, width) uint16, 0 where there is nothing; ``normals`` (height, width, 3) uint8:
+        ``round(127.5 (n + 1))``.
+    """
+    depth = np.clip(np.rint(images["depth"][..., 0] * _MM_PER_M), 0.0, _MOST_MM)
+    return {
+        "rgb": images["rgb"],
+        "depth": depth.astype(np.uint16),
+        "instance": np.clip(images["instance"][..., 0], 0, 65_535).astype(np.uint16),
+        "normals": np.rint(127.5 * (images["normals"] + 1.0)).astype(np.uint8),
+    }
+
+
+def records(folder: Path) -> Iterator[tuple[dict[str, Any], Path]]:
+    """The rows of a data set in order, each with the folder of its images.
+
+    Raises:
+        ValueError: A line is no record.
+        FileNotFoundError: There is none.
+    """
+    found = False
+    for group in sorted(_folders(folder / "views")):
+        for house in sorted(_folders(group)):
+            if not (house / _RECORDS).exists():
+                continue
+            found = True
+            with open_file(house / _RECORDS) as file:
+                for number, line in enumerate(lines(file, house / _RECORDS), start=1):
+                    row = parse_json(line, f"{house / _RECORDS} line {number}")
+                    yield row, house
+    if not found:
+        raise FileNotFoundError(2, "holds no records of views", os.fspath(folder))
+
+
+def _folders(folder: Path) -> Sequence[Path]:
+    if not folder.is_dir():
+        return ()
+    return [path for path in folder.iterdir() if path.is_dir() and path.name[0] != "."]

@@ -1,0 +1,23 @@
+"""JSON Lines: a record a line, the images beside them."""
+
+from __future__ import annotations
+
+import json
+import shutil
+from pathlib import Path
+
+from dwell.views.dataset import records
+from dwell.views.formats.splits import SplitFiles
+
+
+def write(folder: Path, out: Path) -> None:
+    """Writes ``SPLIT.jsonl``, and the images below ``images``; paths are relative to ``out``."""
+    with SplitFiles(out, ".jsonl") as files:
+        for row, house in records(folder):
+            there = out / "images" / house.name
+            there.mkdir(parents=True, exist_ok=True)
+            for name in row["images"].values():
+                shutil.copyfile(house / name, there / name)
+            paths = {kind: f"images/{house.name}/{name}" for kind, name in row["images"].items()}
+            line = json.dumps({**row, "images": paths}, ensure_ascii=False) + "\n"
+            files.of(row["split"]).write(line.encode())
