@@ -53,18 +53,20 @@ impl Semantics {
                 house.geometry();
             },
             || {
-                (
+                let gathered = (
                     MaterialColors::gather(house),
                     structure_outlines(house),
                     rest_extents(house, &state),
-                )
+                );
+                // Whoever asks for facts goes on to say them: the grammar is compiled meanwhile.
+                Language::english();
+                gathered
             },
         );
         let rays = RayScene::new(house.clone());
         let bounds: IdVec<ObjectId, Aabb> =
             rest_extents.iter().map(|extent| extent.bounds).collect();
-        // Whoever asks for facts goes on to say them: the grammar is compiled meanwhile.
-        let (seen, _) = threads.join(|| visible_surface_areas(&rays, &bounds), Language::english);
+        let seen = visible_surface_areas(&rays, &bounds);
         let facts: IdVec<ObjectId, ObjectFacts> = threads
             .map(house.objects.len(), |k| {
                 let id = ObjectId::from_index(k);

@@ -66,6 +66,10 @@ impl Checker<'_> {
                 self.hole.set(None);
                 QuestionAnswer::Things(things)
             }
+            Question::HowFar { subject, from } => match self.distance_between(subject, from) {
+                Ok(metres) => QuestionAnswer::Number(metres as usize),
+                Err(reason) => QuestionAnswer::None(reason),
+            },
             Question::Attribute { kind, of } => match self.unique_referent(of) {
                 Ok(term) => self.attribute(*kind, term),
                 Err(reason) => QuestionAnswer::None(reason),

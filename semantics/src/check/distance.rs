@@ -34,6 +34,25 @@ fn distance_m(scene: &SemanticScene<'_>, one: Term, other: Term) -> Option<f32> 
 }
 
 impl Checker<'_> {
+    /// The distance between two things, or from where the listener looks from, rounded to whole metres.
+    pub(super) fn distance_between(
+        &self,
+        subject: &Phrase,
+        from: &Phrase,
+    ) -> Result<u32, UndecidedReason> {
+        let subject = self.unique_referent(subject)?;
+        if let (Phrase::Listener, Some(viewer)) = (from, &self.listener.viewer) {
+            let eye = viewer.world_from_camera.position;
+            let bounds = bounds_of(self.scene, subject).ok_or(UndecidedReason::WrongKind)?;
+            let nearest = eye.clamp(bounds.min, bounds.max);
+            return Ok(rounded_distance_m(eye.distance(nearest)));
+        }
+        let from = self.unique_referent(from)?;
+        distance_m(self.scene, subject, from)
+            .map(rounded_distance_m)
+            .ok_or(UndecidedReason::WrongKind)
+    }
+
     /// A thing is as far from another, or from where the listener looks from, as said, when rounded to whole metres.
     pub(super) fn is_at_distance(
         &self,

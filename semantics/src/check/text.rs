@@ -5,7 +5,7 @@ use crate::form::{Form, Modifier, Phrase};
 use crate::language::{ParseError, PhraseSpan, Sentence};
 use crate::predicates;
 use crate::scene::Term;
-use crate::truth::Truth;
+use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::interrupt::CancelPoller;
 use std::collections::BTreeSet;
 
@@ -60,6 +60,15 @@ impl Checker<'_> {
     /// that has one; `None` for requests.
     pub(crate) fn answer_form(&self, form: &Form) -> Option<QuestionAnswer> {
         match form {
+            Form::Claim(clause) if form.asks_for_parts() => {
+                let mut verdict = self.check(clause);
+                verdict.truth = Truth::Undecided(UndecidedReason::PartOfThing);
+                verdict.witnesses.clear();
+                Some(QuestionAnswer::Truth(verdict))
+            }
+            Form::Question(_) if form.asks_for_parts() => {
+                Some(QuestionAnswer::None(UndecidedReason::PartOfThing))
+            }
             Form::Claim(clause) => Some(QuestionAnswer::Truth(self.check(clause))),
             Form::Question(question) => Some(self.answer(question)),
             Form::NounPhrase(phrase) => Some(QuestionAnswer::Things(self.denotation(phrase))),

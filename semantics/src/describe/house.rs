@@ -80,6 +80,7 @@ pub fn describe_house(scene: &SemanticScene<'_>, options: TextOptions) -> Ground
         writer.there_are(&items, &place);
     }
     if options.length > TextLength::Short {
+        scene.measure_places();
         for room in order {
             writer.end_paragraph();
             say_room(&mut writer, scene, room, options);

@@ -308,6 +308,7 @@ pub fn describe_room(
 
 /// The descriptions of all rooms, in order.
 pub fn describe_rooms(scene: &SemanticScene<'_>, options: TextOptions) -> Vec<GroundedText> {
+    scene.measure_places();
     let checker = Checker::new(scene, Addressee::default());
     let rooms = scene.house().rooms.ids().enumerate();
     rooms

@@ -6,6 +6,7 @@
 mod antecedent;
 mod clause;
 mod mention;
+mod own_parts;
 mod phrase;
 mod question;
 mod request;

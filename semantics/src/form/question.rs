@@ -35,6 +35,13 @@ pub enum Question {
     },
     /// A count of the things that fit a description. Answered by a number.
     HowMany(Box<Description>),
+    /// The distance of two things. Answered by a number, in whole metres and at least 1, as in [`Clause::Distance`].
+    HowFar {
+        /// The thing.
+        subject: Phrase,
+        /// The other thing, or the listener.
+        from: Phrase,
+    },
     /// An attribute of one thing. Answered by words.
     Attribute {
         /// The attribute.

@@ -70,6 +70,67 @@ impl Form {
     }
 }
 
+/// A predicate with its arguments, from a clause or a modifier.
+#[derive(Clone, Debug, PartialEq, Eq)]
+pub(crate) struct Relation {
+    pub(crate) predicate: String,
+    /// All arguments, the subject first.
+    pub(crate) arguments: Vec<Phrase>,
+}
+
+impl Form {
+    /// Returns the relations that it is about: of its clauses, and of the modifiers of its phrases to what they describe.
+    pub(crate) fn relations(&self) -> Vec<Relation> {
+        let mut found = Vec::new();
+        add_clause_relations(self, &mut found);
+        for phrase in self.phrases() {
+            let Phrase::Described(own) = &phrase else {
+                continue;
+            };
+            for modifier in &own.modifiers {
+                let mut arguments = vec![phrase.clone()];
+                arguments.extend(modifier.arguments.iter().cloned());
+                found.push(Relation {
+                    predicate: modifier.predicate.clone(),
+                    arguments,
+                });
+            }
+        }
+        found
+    }
+}
+
+fn add_clause_relations(form: &Form, found: &mut Vec<Relation>) {
+    let mut open: Vec<&Clause> = Vec::new();
+    match form {
+        Form::Claim(clause)
+        | Form::Question(Question::Whether(clause) | Question::Which { clause, .. }) => {
+            open.push(clause);
+        }
+        Form::Question(Question::Alternatives(clauses)) => open.extend(clauses),
+        Form::Several(forms) => {
+            for form in forms {
+                add_clause_relations(form, found);
+            }
+        }
+        Form::Request(_) | Form::Question(_) | Form::NounPhrase(_) => {}
+    }
+    while let Some(clause) = open.pop() {
+        match clause {
+            Clause::Holds {
+                predicate,
+                arguments,
+            } => found.push(Relation {
+                predicate: predicate.clone(),
+                arguments: arguments.clone(),
+            }),
+            Clause::Now(inner) | Clause::Not(inner) => open.push(inner),
+            Clause::All(clauses) | Clause::Any(clauses) => open.extend(clauses),
+            _ => {}
+        }
+    }
+}
+
 fn landmark_modifiers(clause: &Clause) -> usize {
     match clause {
         Clause::Holds { arguments, .. } => {
@@ -119,6 +180,10 @@ fn visit_question(question: &mut Question, visit: PhraseVisitor<'_>) {
             visit_clause(clause, visit);
         }
         Question::HowMany(what) => visit_description(what, visit),
+        Question::HowFar { subject, from } => {
+            visit_phrase(subject, PhraseRole::Topic, visit);
+            visit_phrase(from, PhraseRole::Landmark, visit);
+        }
         Question::Attribute { of, .. } => visit_phrase(of, PhraseRole::Topic, visit),
     }
 }

@@ -260,7 +260,7 @@ fn existence_parts<'a>(function: &str, arguments: &'a [Tree]) -> Option<Existenc
             modifiers: vec![Modifier::new("in_room", [room(place)?])],
             items,
         },
-        ("see_from" | "whether_see_from", [place, items]) => ExistenceParts {
+        ("see_from" | "see_from_list" | "whether_see_from", [place, items]) => ExistenceParts {
             modifiers: vec![Modifier::new("visible_from_room", [room(place)?])],
             items,
         },

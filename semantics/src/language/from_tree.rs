@@ -2,7 +2,8 @@
 
 use super::phrases::{modifier, nominal, phrase, relation_predicate, size};
 use super::{
-    distances, existence, numbers, places, questions, requests, rooms, sets, verb_phrases,
+    distances, existence, numbers, other_clauses, places, questions, requests, rooms, sets,
+    verb_phrases,
 };
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
@@ -336,7 +337,8 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
         _ => {
             return existence::from_tree(function, arguments)
                 .or_else(|| rooms::from_tree(function, arguments))
-                .or_else(|| distances::from_tree(function, arguments));
+                .or_else(|| distances::from_tree(function, arguments))
+                .or_else(|| other_clauses::from_tree(function, arguments));
         }
     })
 }
@@ -486,6 +488,20 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
         ("room_exactly", [count, noun]) => {
             let noun = Noun::Room(entry_id(noun)?);
             Description::new(Quantifier::Exactly(number(count)?), noun)
+        }
+        ("room_with_list", [own, things]) => {
+            let with = |thing| Modifier::new("room_contains", [thing]);
+            let mut room = kind(own, Quantifier::The)?;
+            match existence::items_from_tree(things)? {
+                Phrase::List(all) => room.modifiers.extend(all.into_iter().map(with)),
+                one => room.modifiers.push(with(one)),
+            }
+            room
+        }
+        ("room_with_walls_and", [own, color, thing]) => {
+            let mut room = kind(own, Quantifier::The)?;
+            room.colors.push(entry_id(color)?);
+            room.with_modifier(Modifier::new("room_contains", [phrase(thing)?]))
         }
         ("room_every", [own]) => kind(own, Quantifier::Every)?,
         ("room_no", [own]) => kind(own, Quantifier::No)?,

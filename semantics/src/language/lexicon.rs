@@ -49,6 +49,10 @@ struct LexiconFile {
     noun: TextPairs,
     #[serde(default)]
     noun_synonym: Texts,
+    #[serde(default)]
+    color_synonym: Texts,
+    #[serde(default)]
+    material_synonym: Texts,
     structure: TextPairs,
     state: Texts,
     adjective_state: Texts,
@@ -102,6 +106,16 @@ pub(super) fn add_room(lexicon: &mut Lexicon, noun: &str, several: &str, preposi
         lexicon.add_texts(ROOM, noun, &[&[], &[noun]]);
     } else {
         lexicon.add_texts(ROOM, noun, &[&[noun], &[]]);
+    }
+}
+
+/// "Dark gray" and "dark grey".
+fn spellings_of_gray(text: &str) -> Vec<String> {
+    let british = text.replace("gray", "grey");
+    if british == text {
+        vec![british]
+    } else {
+        vec![text.to_owned(), british]
     }
 }
 
@@ -186,17 +200,18 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
         }
     }
     for word in ColorVocabulary::Spoken.words() {
-        let texts: &[&str] = if word == "gray" {
-            &["gray", "grey"]
-        } else {
-            &[word]
-        };
-        lexicon.add_texts("color", word, &[texts]);
+        let synonyms = file.color_synonym.get(word).into_iter().flatten();
+        let texts = std::iter::once(word).chain(synonyms.map(String::as_str));
+        let texts: Vec<String> = texts.flat_map(spellings_of_gray).collect();
+        lexicon.add_texts("color", word, &[&borrowed(&texts)]);
     }
     let substances = library().iter();
     let substances = substances.map(|substance| substance.adjective.as_str());
     for word in substances.chain(families()) {
         lexicon.add_texts("material", word, &[&[word]]);
+        if let Some(synonyms) = file.material_synonym.get(word) {
+            lexicon.add_texts("material", word, &[&borrowed(synonyms)]);
+        }
     }
     Ok(lexicon)
 }

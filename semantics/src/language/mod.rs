@@ -4,11 +4,14 @@
 //! the grammar.
 
 mod alternatives;
+mod converse;
 mod distances;
 mod existence;
 mod from_tree;
 mod lexicon;
 mod numbers;
+mod other_clauses;
+mod own_doors;
 mod phrases;
 mod places;
 mod plurals;

@@ -3,6 +3,7 @@
 use super::from_tree::number;
 use super::phrases::{modifier, nominal, phrase};
 use super::to_tree::TreeBuilder;
+use super::{sets, verb_phrases};
 use crate::form::{Clause, Description, Modifier, Phrase, Quantifier};
 use crate::grammar::Tree;
 
@@ -46,6 +47,32 @@ pub(super) fn comparative_by_modifier(what: &Tree, one: &Tree, other: &Tree) -> 
 pub(super) fn comparative_by_place(more: [&Tree; 2], than: [&Tree; 2]) -> Option<Clause> {
     let there = |[what, place]: [&Tree; 2]| Some(nominal(what)?.with_modifier(modifier(place)?));
     Some(clause(there(more)?, there(than)?))
+}
+
+/// "Most of the books are on the shelf": more of them are than are not. Only what a modifier can deny.
+pub(super) fn majority(set: &Tree, said: &Tree) -> Option<Clause> {
+    let all = sets::set_description(set)?;
+    let what = verb_phrases::with_predications(all.clone(), said)?;
+    let added = what.modifiers.get(all.modifiers.len()..)?;
+    let said = match (added, &what.state, &all.state) {
+        ([one], own, known) if own == known => one.clone(),
+        ([], Some(state), None) => Modifier::new(state, []),
+        _ => return None,
+    };
+    let rest = Description {
+        modifiers: all.modifiers.clone(),
+        state: all.state.clone(),
+        ..what
+    };
+    (rest == all).then_some(())?;
+    let not = Modifier {
+        negated: !said.negated,
+        ..said.clone()
+    };
+    Some(clause(
+        all.clone().with_modifier(said),
+        all.with_modifier(not),
+    ))
 }
 
 /// Equal numbers: more of neither.

@@ -1,7 +1,7 @@
 //! Noun phrases: the meanings of the grammar's functions that make them.
 
 use super::from_tree::{entry_id, number, parts, place_of, quality_of, room};
-use super::{existence, places, questions, sets, verb_phrases};
+use super::{converse, existence, own_doors, places, questions, sets, verb_phrases};
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
 use crate::size::SizeClass;
@@ -104,6 +104,9 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
                 questions::superlative_of(&entry_id(word)?, function == "comparative_less_of")?;
             Some(questions::with_selection(sets::set_description(of)?, order, None).into())
         }
+        ("door_of_thing" | "i_door_of_thing", [whole]) => own_doors::with_door(whole),
+        ("pair_of", [noun]) => of(Quantifier::Exactly(2), noun),
+        ("the_pair_of", [noun]) => of(Quantifier::Every, noun),
         ("nobody", []) => {
             let person = Noun::Object("person".to_owned());
             Some(Description::new(Quantifier::No, person).into())
@@ -261,6 +264,10 @@ fn indefinite_pronoun(tree: &Tree) -> Option<Description> {
         ("something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun))
+        }
+        ("nothing_inside" | "something_inside", [inner]) => {
+            let inside = Modifier::new("in", [Phrase::Pronoun]);
+            Some(indefinite_pronoun(inner)?.with_modifier(inside))
         }
         ("nothing_with" | "something_with", [inner, added]) => {
             Some(indefinite_pronoun(inner)?.with_modifier(modifier(added)?))
@@ -443,6 +450,19 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
                 ..Modifier::new("has", [nominal(content)?.into()])
             });
         }
+        ("modifier_around", [other, relation]) => {
+            return converse::modifier(&entry_id(relation)?, phrase(other)?);
+        }
+        ("modifier_same_color", [other]) => ("same_color".to_owned(), vec![phrase(other)?]),
+        ("modifier_same_kind", [other]) => ("same_kind".to_owned(), vec![phrase(other)?]),
+        ("modifier_on_which", [load]) => (
+            "supports".to_owned(),
+            vec![existence::items_from_tree(load)?],
+        ),
+        ("modifier_in_which", [content]) => (
+            "contains".to_owned(),
+            vec![existence::items_from_tree(content)?],
+        ),
         ("modifier_closer", [near, far]) => {
             ("closer_to".to_owned(), vec![phrase(near)?, phrase(far)?])
         }

@@ -2,8 +2,8 @@
 
 use super::existence::{self, is_bare};
 use super::from_tree::{
-    affirmative_clause, atomic_clause, entry_id, parts, place_of, possibly_negated_clause,
-    quality_of, room,
+    affirmative_clause, atomic_clause, entry_id, modifier_clause, parts, place_of,
+    possibly_negated_clause, quality_of, room,
 };
 use super::lexicon::{RELATION, ROOM_NOUN};
 use super::phrases::{modifier, nominal, phrase};
@@ -160,6 +160,38 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             };
             which(Some(*kind), Clause::Exists(Phrase::Hole))
         }
+        ("which_leads", [noun, passage]) => which(
+            Some(nominal(noun)?),
+            modifier_clause(Phrase::Hole, places::passage_from_tree(passage)?),
+        ),
+        // "Is that a clock on the wall?" is whether there is one, where a place is named.
+        ("is_that", [item]) => Question::Whether(Clause::Exists(placed_indefinite(item)?)),
+        ("is_that_either", [one, other, place]) => {
+            let place = modifier(place)?;
+            let there = |noun: &Tree| {
+                let noun = nominal(noun)?.with_modifier(place.clone());
+                Some(Clause::Exists(noun.into()))
+            };
+            Question::Alternatives(vec![there(one)?, there(other)?])
+        }
+        ("floor_kind", [place]) => {
+            let floor = Noun::Structure("floor".to_owned());
+            let there = Modifier::new("in_room", [room(place)?]);
+            Question::Attribute {
+                kind: AttributeKind::Material,
+                of: Description::new(Quantifier::Some, floor)
+                    .with_modifier(there)
+                    .into(),
+            }
+        }
+        ("how_far", [subject, from]) => Question::HowFar {
+            subject: phrase(subject)?,
+            from: phrase(from)?,
+        },
+        ("how_far_away", [subject]) => Question::HowFar {
+            subject: phrase(subject)?,
+            from: Phrase::Listener,
+        },
         ("where_leads", [door]) => {
             let any = Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
             which(
@@ -257,7 +289,8 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             let kind = with_selection(nominal(noun)?, &entry_id(order)?, None);
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
-        ("which_order_to", [noun, order, reference]) => {
+        ("which_order_to", [noun, order, reference])
+        | ("which_stands_order", [noun, _, order, reference]) => {
             let kind = with_selection(nominal(noun)?, &entry_id(order)?, Some(phrase(reference)?));
             which(Some(kind), Clause::Exists(Phrase::Hole))
         }
@@ -266,6 +299,18 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
 }
 
 /// "Stands next to the door".
+/// The phrase of an item such as "a clock on the wall": indefinite, with what tells where.
+fn placed_indefinite(item: &Tree) -> Option<Phrase> {
+    match existence::items_from_tree(item)? {
+        Phrase::Described(own)
+            if own.quantifier == Quantifier::Some && !own.modifiers.is_empty() =>
+        {
+            Some(Phrase::Described(own))
+        }
+        _ => None,
+    }
+}
+
 pub(super) fn posture_phrase(posture: &Tree, said: &Tree) -> Tree {
     Tree::apply("vp_standing", [posture.clone(), said.clone()])
 }
@@ -397,6 +442,20 @@ impl TreeBuilder<'_> {
             },
             Question::Alternatives(clauses) => self.alternatives(clauses)?,
             Question::Which { kind, clause } => self.which(kind.as_deref(), clause)?,
+            Question::HowFar {
+                subject,
+                from: Phrase::Listener,
+            } => Tree::apply(
+                "how_far_away",
+                [self.phrase(subject, PhrasePosition::Free)?],
+            ),
+            Question::HowFar { subject, from } => Tree::apply(
+                "how_far",
+                [
+                    self.phrase(subject, PhrasePosition::Free)?,
+                    self.phrase(from, PhrasePosition::Free)?,
+                ],
+            ),
             Question::Attribute { kind, of } => {
                 let function = match kind {
                     AttributeKind::Color => "what_color",

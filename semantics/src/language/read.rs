@@ -11,13 +11,15 @@ pub const MAX_TEXT_BYTES: usize = 4096;
 pub const MAX_WORDS: usize = 80;
 /// Largest number of suggestions for an unknown word.
 const MOST_NEAREST: usize = 5;
+/// Largest number of unknown words with suggestions.
+const MOST_SUGGESTED: usize = 8;
 
 /// A word that the language lacks.
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub struct UnknownWord {
     /// The word, lower case.
     pub word: String,
-    /// The most similar known words, the nearest first.
+    /// The most similar known words, the nearest first; none from the ninth unknown word of a text on.
     pub nearest: Vec<String>,
 }
 
@@ -44,6 +46,12 @@ pub enum ParseError {
     /// A pronoun stands for nothing that was named before.
     #[error("\"it\" or \"one\" stands for nothing that the sentence before is about")]
     NoAntecedent,
+    /// All words are known and follow the grammar, but together they mean nothing that is defined.
+    #[error("{sentence:?} follows the grammar, but nothing is defined that it could mean")]
+    Undefined {
+        /// The normalized words.
+        sentence: String,
+    },
     /// All words are known, but they form no sentence of the grammar.
     #[error(
         "understood as far as {understood:?}; then {found} was found, and {}", list_expected(.expected)
@@ -208,17 +216,25 @@ impl Language {
                 best = other;
             }
         }
+        if let Err(ParseError::UnknownWords(unknown)) = &mut best {
+            for one in unknown.iter_mut().take(MOST_SUGGESTED) {
+                one.nearest = self.grammar.nearest_words(&one.word, MOST_NEAREST);
+            }
+        }
         best
     }
 
     fn read_words(&self, words: &[String]) -> Result<Readings, ParseError> {
-        let unknown = words.iter().filter(|word| !self.grammar.has_word(word));
-        let unknown: Vec<UnknownWord> = unknown
-            .map(|word| UnknownWord {
-                word: word.clone(),
-                nearest: self.grammar.nearest_words(word, MOST_NEAREST),
-            })
-            .collect();
+        let mut unknown: Vec<UnknownWord> = Vec::new();
+        for word in words {
+            let is_told = unknown.iter().any(|one| one.word == *word);
+            if !is_told && !self.grammar.has_word(word) {
+                unknown.push(UnknownWord {
+                    word: word.clone(),
+                    nearest: Vec::new(),
+                });
+            }
+        }
         if !unknown.is_empty() {
             return Err(ParseError::UnknownWords(unknown));
         }
@@ -239,11 +255,16 @@ impl Language {
             .iter()
             .flat_map(|(_, form)| form.resolve_anaphora(None))
         {
-            if !forms.contains(&form) {
+            if !forms.contains(&form) && !form.has_load_on_own_shelf() {
                 forms.push(form);
             }
         }
         if forms.is_empty() {
+            if !parse.trees.is_empty() {
+                return Err(ParseError::Undefined {
+                    sentence: words.join(" "),
+                });
+            }
             let found = words.get(parse.understood);
             let mut expected = parse.expected;
             expected.truncate(12);

@@ -46,6 +46,20 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             }
             rest
         }
+        ("on_leaving", [last]) => {
+            let here = Description::new(Quantifier::The, Noun::Room(Noun::ANY_ROOM.to_owned()));
+            vec![RequestStep::Leave(here.into()), step(last)?]
+        }
+        ("on_reaching_room", [place, rest]) => {
+            let mut steps = plan(rest)?;
+            steps.insert(0, RequestStep::GoTo(room(place)?));
+            steps
+        }
+        ("on_reaching", [thing, rest]) => {
+            let mut steps = plan(rest)?;
+            steps.insert(0, act("approach", thing)?);
+            steps
+        }
         ("group", [only]) => coordinated_steps(only)?,
         ("group_then", [first, rest]) => {
             let mut steps = coordinated_steps(first)?;
@@ -124,6 +138,18 @@ fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("go_through", [to, way]) => {
             vec![act("go_through", way)?, RequestStep::GoTo(room(to)?)]
         }
+        ("turn_left_into", [to]) => {
+            vec![
+                RequestStep::Turn(TurnDirection::Left),
+                RequestStep::GoTo(room(to)?),
+            ]
+        }
+        ("turn_right_into", [to]) => {
+            vec![
+                RequestStep::Turn(TurnDirection::Right),
+                RequestStep::GoTo(room(to)?),
+            ]
+        }
         _ => return None,
     })
 }
@@ -195,6 +221,25 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             predicate: "near".to_owned(),
             to: phrase(to)?,
         },
+        ("turn_toward", [object, to]) => RequestStep::Put {
+            object: phrase(object)?,
+            predicate: "facing".to_owned(),
+            to: phrase(to)?,
+        },
+        ("leave_any_room", []) => {
+            let room = Noun::Room(Noun::ANY_ROOM.to_owned());
+            RequestStep::Leave(Description::new(Quantifier::The, room).into())
+        }
+        ("make_state", [object, state]) => {
+            let verb = match entry_id(state)?.as_str() {
+                "open" => "open",
+                "closed" => "close",
+                "switched_on" => "switch_on",
+                "switched_off" => "switch_off",
+                _ => return None,
+            };
+            act(verb, object)?
+        }
         ("leave_state", [object, state]) => {
             let verb = match entry_id(state)?.as_str() {
                 "open" | "half_open" => "close",

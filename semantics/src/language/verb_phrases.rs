@@ -126,6 +126,11 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
             }
             all
         }
+        ("vps_and_hang", [first, mount]) => {
+            let mut all = predications(first)?;
+            all.extend(relation("hangs_on", [phrase(mount)?]));
+            all
+        }
         ("vps_single" | "vps_several", [inner]) => predications(inner)?,
         ("vps_pair" | "vps_beside", [first, last]) => {
             let mut all = predications(first)?;
@@ -133,6 +138,12 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
                 ("vps_one", [one]) => all.extend(predications(one)?),
                 ("vps_not", [one]) => all.extend(negate_single(predications(one)?)?),
                 _ => all.extend(predications(last)?),
+            }
+            // "Black on top" is not what is black and switched on.
+            if parts(tree)?.0 == "vps_beside"
+                && all.iter().skip(1).any(|(said, _)| is_switching(said))
+            {
+                return None;
             }
             // "Visible in the mirror" is not what is visible and in the mirror.
             let is = |at: usize, found: fn(&Predication) -> bool| {
@@ -156,6 +167,13 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
         }
         _ => return None,
     })
+}
+
+fn is_switching(said: &Predication) -> bool {
+    matches!(
+        said,
+        Predication::Quality(Quality::State(state)) if state.starts_with("switched_")
+    )
 }
 
 fn hangs(posture: &Tree) -> bool {

@@ -52,9 +52,11 @@ mod open_to;
 mod openness;
 mod opposite;
 mod patterned;
+mod places;
 mod reachable;
 mod right_of;
 mod room_contains;
+mod round;
 mod same_color;
 mod same_kind;
 mod same_material;
@@ -285,6 +287,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &switched_off::SwitchedOff,
         &full::Full,
         &empty::Empty,
+        &round::Round,
         &striped::Striped,
         &checked::Checkered,
         &patterned::Patterned,

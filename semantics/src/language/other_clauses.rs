@@ -1,0 +1,72 @@
+//! Clauses that people say in ways of their own and the engine says otherwise.
+
+use super::from_tree::{atomic_clause, entry_id, place_of, room};
+use super::phrases::{modifier, nominal, phrase};
+use super::{converse, existence, numbers, places, verb_phrases};
+use crate::form::{Clause, Modifier, Phrase, Quantifier};
+use crate::grammar::Tree;
+
+/// The clause of a tree; `None` for other trees.
+pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
+    Some(match (function, arguments) {
+        ("has_around" | "whether_has_around", [holder, item, relation]) => converse::clause(
+            phrase(holder)?,
+            &entry_id(relation)?,
+            existence::items_from_tree(item)?,
+        )?,
+        ("leads_between", [door, from, to]) => {
+            let door = phrase(door)?;
+            Clause::All(vec![
+                atomic_clause("leads_from", vec![door.clone(), room(from)?]),
+                atomic_clause("leads_to", vec![door, room(to)?]),
+            ])
+        }
+        ("structure_says", [noun, added, said]) => {
+            verb_phrases::clause(places::structure(noun, Some(modifier(added)?))?, said)?
+        }
+        ("share_place", [one, other, relation, noun]) => {
+            let place = [relation.clone(), noun.clone(), other.clone()];
+            let (predicate, shared) = place_of(&Tree::apply("place_same_thing", place))?;
+            atomic_clause(&predicate, vec![phrase(one)?, shared])
+        }
+        ("share_room" | "whether_share_room", [one, other]) => {
+            let (predicate, shared) = place_of(&Tree::apply("place_same_room", [other.clone()]))?;
+            atomic_clause(&predicate, vec![phrase(one)?, shared])
+        }
+        ("exists_each_other", [subject, relation]) => atomic_clause(
+            &entry_id(relation)?,
+            vec![phrase(subject)?, Phrase::EachOther],
+        ),
+        ("room_has_each_other", [place, subject, relation]) => {
+            let Phrase::Described(own) = phrase(subject)? else {
+                return None;
+            };
+            let there = own.with_modifier(Modifier::new("in_room", [room(place)?]));
+            atomic_clause(&entry_id(relation)?, vec![there.into(), Phrase::EachOther])
+        }
+        ("most_are" | "whether_most_are", [set, said]) => numbers::majority(set, said)?,
+        ("neither_says", [one, other, said]) => {
+            let not = |subject: &Tree| {
+                let clause = verb_phrases::clause(phrase(subject)?, said)?;
+                Some(Clause::Not(Box::new(clause)))
+            };
+            Clause::All(vec![not(one)?, not(other)?])
+        }
+        ("exists_neither_of", [one, other]) => {
+            let no = |noun: &Tree| {
+                let noun = nominal(noun)?.with_quantifier(Quantifier::No);
+                Some(Clause::Exists(noun.into()))
+            };
+            Clause::All(vec![no(one)?, no(other)?])
+        }
+        ("room_has_neither", [place, one, other]) => {
+            let there = Modifier::new("in_room", [room(place)?]);
+            let no = |noun: &Tree| {
+                let noun = nominal(noun)?.with_modifier(there.clone());
+                Some(Clause::Exists(noun.with_quantifier(Quantifier::No).into()))
+            };
+            Clause::All(vec![no(one)?, no(other)?])
+        }
+        _ => return None,
+    })
+}
