@@ -15,11 +15,11 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             existence::items_from_tree(item)?,
         )?,
         ("leads_between", [door, from, to]) => {
-            let door = phrase(door)?;
-            Clause::All(vec![
-                atomic_clause("leads_from", vec![door.clone(), room(from)?]),
-                atomic_clause("leads_to", vec![door, room(to)?]),
-            ])
+            let Phrase::Described(door) = phrase(door)? else {
+                return None;
+            };
+            let door = door.with_modifier(Modifier::new("leads_from", [room(from)?]));
+            atomic_clause("leads_to", vec![door.into(), room(to)?])
         }
         ("structure_says", [noun, added, said]) => {
             verb_phrases::clause(places::structure(noun, Some(modifier(added)?))?, said)?

@@ -539,6 +539,12 @@ impl TreeBuilder<'_> {
                         None => Tree::apply("what_holds", [word, object]),
                     });
                 }
+                if let Some(passage) = self.passage(predicate, std::slice::from_ref(object)) {
+                    return Some(Tree::apply("which_leads", [kind?, passage]));
+                }
+                ["in_room", "on_storey"]
+                    .contains(&predicate.as_str())
+                    .then_some(())?;
                 Some(Tree::apply("which_place", [kind?, self.place(object)?]))
             }
             (

@@ -538,3 +538,44 @@ fn ambiguous_nouns_ask_which_thing_is_meant() {
     }
     assert!(named > 0);
 }
+
+#[test]
+fn distances_parts_and_round_things_are_asked_for() {
+    let house = crate::common::small_house().house;
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let checker = Checker::new(&scene, Addressee::default());
+    let answer = |text: &str| checker.check_text(text).unwrap().answer.unwrap();
+    // 5.9 m along one wall and 1.2 m along the other.
+    assert_eq!(
+        answer("How far is the fridge from the desk?"),
+        QuestionAnswer::Number(6)
+    );
+    assert!(
+        check(&scene, "The fridge is about 6 metres from the desk.")
+            .truth
+            .is_true()
+    );
+    let QuestionAnswer::Truth(verdict) = answer("The fridge has two doors.") else {
+        panic!("a truth value");
+    };
+    assert_eq!(
+        verdict.truth,
+        Truth::Undecided(UndecidedReason::PartOfThing)
+    );
+    assert_eq!(
+        answer("How many doors does the fridge have?"),
+        QuestionAnswer::None(UndecidedReason::PartOfThing)
+    );
+    assert!(check(&scene, "The desk is round.").truth.is_false());
+    let (kitchen, _) = open("seed:11").unwrap();
+    let semantics = Semantics::new(&Arc::new(kitchen));
+    let state = State::new(semantics.house());
+    let scene = semantics.scene(&state);
+    assert!(
+        check(&scene, "There is a round table in the kitchen.")
+            .truth
+            .is_true()
+    );
+}
