@@ -10,8 +10,11 @@ from collections.abc import Iterator
 from dwell.cli import COMMANDS, parser
 
 #: Those with commands of their own below them.
-_BELOW = {"localize": ("make", "score"), "measure": ("import", "coverage"), "record": ("teach",),
-    "views": ("make", "export", "datasheet"),
+_BELOW = {
+    "localize": ("make", "score"),
+    "measure": ("import", "coverage"),
+    "record": ("teach",),
+    "views": ("make", "clip", "export", "datasheet"),
 }
 
 
