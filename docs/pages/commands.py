@@ -15,7 +15,7 @@ _BELOW = {
     "localize": ("make", "score"),
     "measure": ("import", "coverage"),
     "record": ("teach",),
-    "views": ("make", "export", "datasheet"),
+    "views": ("make", "clip", "export", "datasheet"),
 }
 
 

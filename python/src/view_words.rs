@@ -57,7 +57,7 @@ impl WorldAccess<'_> {
                     })
                 });
                 let witnesses: Vec<Value> = witnesses.collect();
-                let reason = reason.map(|reason| reason.to_string());
+                let reason = reason.map(ToString::to_string);
                 (status, reason, witnesses, *holds_elsewhere)
             }
             ClaimVerdict::NotUnderstood(error) => {

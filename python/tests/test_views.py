@@ -202,6 +202,25 @@ def test_the_command_skips_bad_houses_and_refuses_other_jobs(
     assert command("views", "datasheet", tmp_path).returncode == 1
 
 
+def test_a_clip_tells_what_was_seen_and_heard(tmp_path: Path, command: Command) -> None:
+    out = tmp_path / "clip"
+    words = ("views", "clip", HOUSE, "--out", out, "--duration-s", 1, "--size", 64, "--seed", 2)
+    assert command(*words).returncode == 0
+    row = json.loads((out / "clip.json").read_text("utf-8"))
+    (sounds,) = row["sounds"]
+    assert (sounds["from_s"], sounds["to_s"]) == (0.2, 0.8)
+    for heard in row["heard"]:
+        assert 0.2 <= heard["from_s"] < heard["to_s"] <= 0.8
+    times = [picture["time_s"] for picture in row["pictures"]]
+    assert times == [0.0, 0.5]
+    assert {one["from_s"] for one in row["seen"]} <= set(times)
+    assert (out / "001.png").exists()
+    assert (out / "sound.wav").stat().st_size > 2 * 16_000 * 4
+    assert command(*words).returncode == 1
+    refused = command("views", "clip", HOUSE, "--out", tmp_path / "b", "--duration-s", 60)
+    assert "duration_s is 60" in refused.stderr
+
+
 def test_every_form_holds_all_views(folder: Path, tmp_path: Path) -> None:
     for form in FORMS:
         if form != "parquet":

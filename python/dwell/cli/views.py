@@ -7,7 +7,7 @@ import sys
 import time
 from typing import Any
 
-from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
+from dwell.cli.common import ProgressBar, count, count_from_1, number, path, print_json, shard
 from dwell.cli.job_journal import claim, refuse_other
 
 #: Houses that were skipped and are told of on standard error.
@@ -40,6 +40,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--threads", type=count_from_1, default=1, help="houses at a time (default 1)"
     )
     make.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    clip = steps.add_parser("clip", help="a walk with pictures and sound")
+    clip.add_argument("house", metavar="HOUSE")
+    clip.add_argument("--out", type=path, required=True, metavar="FOLDER")
+    clip.add_argument("--duration-s", type=number, default=5.0, metavar="S", help="1 to 10")
+    clip.add_argument("--size", type=count, default=256, help="edges of pictures (default 256)")
+    clip.add_argument("--seed", type=count, default=0, help="draws the way and what sounds")
     export = steps.add_parser("export", help="a data set of views as other programs read it")
     export.add_argument("folder", type=path, metavar="FOLDER")
     export.add_argument(
@@ -56,7 +62,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
 
 def run(args: argparse.Namespace) -> int:
     """Does a step; 1 when a house could not be used."""
-    return {"make": _make, "export": _export, "datasheet": _datasheet}[args.stage](args)
+    steps = {"make": _make, "clip": _clip, "export": _export, "datasheet": _datasheet}
+    return steps[args.stage](args)
 
 
 def _make(args: argparse.Namespace) -> int:
@@ -102,6 +109,15 @@ def _make(args: argparse.Namespace) -> int:
         rate = f", {summary['views_per_s']} a second" if views else ""
         print(f"{done} houses; {views} views made now{rate}; {args.out}")
     return 1 if skipped else 0
+
+
+def _clip(args: argparse.Namespace) -> int:
+    from dwell.views.clips import walk, write_clip
+
+    made = walk(args.house, duration_s=args.duration_s, size=args.size, seed=args.seed)
+    write_clip(made, args.out)
+    print(args.out)
+    return 0
 
 
 def _export(args: argparse.Namespace) -> int:

@@ -24,7 +24,7 @@ from dwell.files import lines, open_file, parse_json
 from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
 from dwell.views.questions import ask
-from dwell.views.record import ViewRecord, view_record
+from dwell.views.record import HouseNames, ViewRecord, view_record
 
 __all__ = ["LIGHTS", "ViewSettings", "house_records", "make", "records", "split_of"]
 
@@ -94,6 +94,7 @@ def house_records(name: str, settings: ViewSettings) -> list[ViewRecord]:
         if light != "own":
             lit += ("&" if "?" in name else "?") + f"time_of_day={LIGHTS[light]:g}"
         worlds.append(World(House.open(lit), agents=0))
+    names = HouseNames(worlds[0])
     found = []
     cameras = held_cameras(worlds[0], settings.views, settings.seed)
     for k, camera in enumerate(cameras):
@@ -107,6 +108,7 @@ def house_records(name: str, settings: ViewSettings) -> list[ViewRecord]:
             light=lights[which],
             size=settings.size,
             seed=seed,
+            names=names,
         )
         record.row |= {"house": name, "split": split_of(name)}
         found.append(record)
@@ -188,6 +190,15 @@ def _make_house(name: str, number: int, folder: Path, settings: ViewSettings) ->
         return str(error)
     except DwellError as error:
         return str(error)
+    try:
+        _write_house(made, number, folder)
+    except OSError as error:
+        error.filename = error.filename or os.fspath(folder)
+        raise
+    return len(made)
+
+
+def _write_house(made: Sequence[ViewRecord], number: int, folder: Path) -> None:
     draft = folder.with_name(f".{folder.name}.part")
     shutil.rmtree(draft, ignore_errors=True)
     draft.mkdir(parents=True)
@@ -199,7 +210,6 @@ def _make_house(name: str, number: int, folder: Path, settings: ViewSettings) ->
     (draft / _RECORDS).write_text("".join(rows), "utf-8")
     shutil.rmtree(folder, ignore_errors=True)
     os.replace(draft, folder)
-    return len(made)
 
 
 def _write_images(folder: Path, record: ViewRecord) -> dict[str, str]:

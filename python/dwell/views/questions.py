@@ -8,7 +8,7 @@ from __future__ import annotations
 
 import json
 from collections import Counter
-from collections.abc import Sequence
+from collections.abc import Callable, Iterator, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -16,7 +16,7 @@ import numpy as np
 from dwell import _native
 from dwell.views.forms import Form, phrase
 from dwell.views.situations import SITUATIONS
-from dwell.views.templates import TEMPLATES, Asked
+from dwell.views.templates import TEMPLATES, Asked, Thing
 
 if TYPE_CHECKING:
     from dwell.views.record import ViewRecord
@@ -66,16 +66,11 @@ def ask(
     rng = np.random.default_rng([seed, len(records)])
     clear = [_ClearThings(record) for record in records]
     pairs = 0
-    for template, (kind, forms_of) in TEMPLATES.items():
-        forms: dict[str, Asked] = {}
-        for view in clear:
-            for asked in forms_of(view.things):
-                forms.setdefault(json.dumps(asked.form, sort_keys=True), asked)
-        keys = sorted(forms)
-        keys = [keys[k] for k in rng.permutation(len(keys))[:_MOST_FORMS]]
-        chosen = [forms[key] for key in keys]
-        answers = _answers(world, clear, chosen)
-        rows_of = [(asked.form, rows) for asked, rows in zip(chosen, answers, strict=True)]
+    chosen = {template: _chosen(forms_of, clear, rng) for template, (_, forms_of) in _TEMPLATES}
+    # All at once: what is found out about a view serves every template.
+    answers = iter(_answers(world, clear, [asked for of in chosen.values() for asked in of]))
+    for template, (kind, _) in _TEMPLATES:
+        rows_of = [(asked.form, next(answers)) for asked in chosen[template]]
         pairs = _write_pairs(records, (template, kind, "picture"), rows_of, most, pairs, rng)
     for kind, told in SITUATIONS.items() if situations else ():
         rows_of = [
@@ -83,6 +78,23 @@ def ask(
             for form, text, words in told(world, records)
         ]
         pairs = _write_pairs(records, (kind, kind, "house"), rows_of, most, pairs, rng)
+
+
+_TEMPLATES = tuple(TEMPLATES.items())
+
+
+def _chosen(
+    forms_of: Callable[[Sequence[Thing]], Iterator[Asked]],
+    clear: Sequence[_ClearThings],
+    rng: np.random.Generator,
+) -> list[Asked]:
+    """Some of the forms of a template that the views of a house offer."""
+    forms: dict[str, Asked] = {}
+    for view in clear:
+        for asked in forms_of(view.things):
+            forms.setdefault(json.dumps(asked.form, sort_keys=True), asked)
+    keys = sorted(forms)
+    return [forms[keys[k]] for k in rng.permutation(len(keys))[:_MOST_FORMS]]
 
 
 def _write_pairs(

@@ -62,6 +62,15 @@ class ViewRecord:
         return {thing["id"]: thing["pixels"] for thing in self.row["things"]}
 
 
+class HouseNames:
+    """What records of one house share: its things and rooms by number."""
+
+    def __init__(self, world: World) -> None:
+        """Of a world, whose things keep their names."""
+        self.things = {row["id"]: row for row in world.objects()}
+        self.rooms = [room["name"] for room in world.house.info()["rooms"]]
+
+
 def view_record(
     world: World,
     camera: HeldCamera,
@@ -70,6 +79,7 @@ def view_record(
     light: str = "own",
     size: int = 256,
     seed: int | None = None,
+    names: HouseNames | None = None,
 ) -> ViewRecord:
     """The record of a view, without questions.
 
@@ -80,6 +90,7 @@ def view_record(
         light: How the house is lit: ``day``, ``lamp`` or ``own``.
         size: Edges of the images, pixels.
         seed: Draws the wordings; without it every form has its first one.
+        names: Those of the world; found where they are not given.
 
     Returns:
         ``things``: what has pixels in the image, the largest first: ``id``, ``name``,
@@ -102,7 +113,8 @@ def view_record(
     least = _LEAST_PIXELS * (size / 256.0) ** 2
     rows = [row for row in seen["visible_objects"].tolist() if row[1] > 0]
     rows.sort(key=lambda row: (-row[1], row[0]))
-    objects = {row["id"]: row for row in world.objects()}
+    names = HouseNames(world) if names is None else names
+    objects = names.things
     rows = [row for row in rows if int(row[0]) in objects]
     ids = [int(row[0]) for row in rows]
     # Facts of all, words of the large ones.
@@ -132,7 +144,7 @@ def view_record(
         "house": world.house.name,
         "light": light,
         "camera": {"width": size, "height": size, "fov_deg": 90.0, **dataclasses.asdict(camera)},
-        "room": None if said["room"] is None else world.house.info()["rooms"][said["room"]]["name"],
+        "room": None if said["room"] is None else names.rooms[said["room"]],
         "things": things,
         "captions": {
             length: _text(text, boxes) | {"claims": text["claims"]}

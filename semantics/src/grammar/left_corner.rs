@@ -7,34 +7,35 @@ use std::collections::BTreeMap;
 /// Productions by the first symbol of their right-hand side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LeftCorners {
-    of_word: BTreeMap<String, Vec<usize>>,
-    of_class: BTreeMap<String, Vec<(usize, usize)>>,
-    of_count: Vec<usize>,
-    of_ordinal: Vec<usize>,
-    of_digits: Vec<usize>,
-    of_category: Vec<Vec<usize>>,
+    /// By the word, the class of an entry with its variant, a number in words or digits, or the category that they begin with.
+    words: BTreeMap<String, Vec<usize>>,
+    classes: BTreeMap<String, Vec<(usize, usize)>>,
+    counts: Vec<usize>,
+    ordinals: Vec<usize>,
+    digits: Vec<usize>,
+    categories: Vec<Vec<usize>>,
 }
 
 impl LeftCorners {
     pub(super) fn gather(productions: &[Production], categories: usize) -> Self {
         let mut found = Self {
-            of_category: vec![Vec::new(); categories],
+            categories: vec![Vec::new(); categories],
             ..Self::default()
         };
         for (at, production) in productions.iter().enumerate() {
             match production.symbols.first() {
                 Some(Symbol::Word(word)) => {
-                    found.of_word.entry(word.clone()).or_default().push(at);
+                    found.words.entry(word.clone()).or_default().push(at);
                 }
                 Some(Symbol::Argument(_, kind)) => match kind {
-                    ArgumentKind::Rules(category) => found.of_category[*category].push(at),
+                    ArgumentKind::Rules(category) => found.categories[*category].push(at),
                     ArgumentKind::Entry(class, variant) => {
-                        let own = found.of_class.entry(class.clone()).or_default();
+                        let own = found.classes.entry(class.clone()).or_default();
                         own.push((*variant, at));
                     }
-                    ArgumentKind::Count => found.of_count.push(at),
-                    ArgumentKind::Ordinal => found.of_ordinal.push(at),
-                    ArgumentKind::Digits => found.of_digits.push(at),
+                    ArgumentKind::Count => found.counts.push(at),
+                    ArgumentKind::Ordinal => found.ordinals.push(at),
+                    ArgumentKind::Digits => found.digits.push(at),
                 },
                 None => {}
             }
@@ -54,30 +55,30 @@ impl LeftCorners {
         let Some(word) = words.get(at) else {
             return starts;
         };
-        let mut open: Vec<usize> = self.of_word.get(word).cloned().unwrap_or_default();
+        let mut open: Vec<usize> = self.words.get(word).cloned().unwrap_or_default();
         for found in lexicon.matches_at(words, at) {
-            let class = self.of_class.get(&lexicon.entry(found.entry).class);
+            let class = self.classes.get(&lexicon.entry(found.entry).class);
             let own = class.into_iter().flatten();
             let own = own.filter(|(variant, _)| *variant == found.variant);
             open.extend(own.map(|(_, production)| *production));
         }
         if lexicon.cardinal_value(word).is_some() {
-            open.extend(&self.of_count);
+            open.extend(&self.counts);
         }
         if lexicon.ordinal_value(word).is_some() {
-            open.extend(&self.of_ordinal);
+            open.extend(&self.ordinals);
         }
         if word.bytes().all(|letter| letter.is_ascii_digit()) {
-            open.extend(&self.of_digits);
+            open.extend(&self.digits);
         }
-        let mut reached: Vec<bool> = vec![false; self.of_category.len()];
+        let mut reached: Vec<bool> = vec![false; self.categories.len()];
         while let Some(production) = open.pop() {
             if std::mem::replace(&mut starts[production], true) {
                 continue;
             }
             let result: NonTerminal = productions[production].result;
             if !std::mem::replace(&mut reached[result], true) {
-                open.extend(&self.of_category[result]);
+                open.extend(&self.categories[result]);
             }
         }
         starts

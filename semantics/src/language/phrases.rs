@@ -423,11 +423,11 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
                 ..Modifier::new(&entry_id(state)?, [])
             });
         }
-        ("modifier_carries_list", [load]) => (
+        ("modifier_carries_list" | "modifier_on_which", [load]) => (
             "supports".to_owned(),
             vec![existence::items_from_tree(load)?],
         ),
-        ("modifier_holds_inside_list", [content]) => (
+        ("modifier_holds_inside_list" | "modifier_in_which", [content]) => (
             "contains".to_owned(),
             vec![existence::items_from_tree(content)?],
         ),
@@ -455,14 +455,6 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
         }
         ("modifier_same_color", [other]) => ("same_color".to_owned(), vec![phrase(other)?]),
         ("modifier_same_kind", [other]) => ("same_kind".to_owned(), vec![phrase(other)?]),
-        ("modifier_on_which", [load]) => (
-            "supports".to_owned(),
-            vec![existence::items_from_tree(load)?],
-        ),
-        ("modifier_in_which", [content]) => (
-            "contains".to_owned(),
-            vec![existence::items_from_tree(content)?],
-        ),
         ("modifier_closer", [near, far]) => {
             ("closer_to".to_owned(), vec![phrase(near)?, phrase(far)?])
         }
