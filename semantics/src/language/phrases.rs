@@ -48,7 +48,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some" | "i_the_plural", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every" | "the_plural", [noun])
+        ("every" | "i_every" | "the_plural" | "the_pair_of", [noun])
         | ("every_counted" | "i_every_counted", [_, noun]) => of(Quantifier::Every, noun),
         ("no", [noun]) => of(Quantifier::No, noun),
         ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
@@ -106,7 +106,6 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         }
         ("door_of_thing" | "i_door_of_thing", [whole]) => own_doors::with_door(whole),
         ("pair_of", [noun]) => of(Quantifier::Exactly(2), noun),
-        ("the_pair_of", [noun]) => of(Quantifier::Every, noun),
         ("nobody", []) => {
             let person = Noun::Object("person".to_owned());
             Some(Description::new(Quantifier::No, person).into())
