@@ -78,13 +78,13 @@ def swaps(world: dwell.World, text: str, claim: Claim, rng: random.Random) -> It
     shown = {word for row in world.objects() for word, _ in attributes(world, row["name"])}
     lacking = [word for word in ("purple", "pink", "orange", "yellow") if word not in shown]
     kinds = {row["category"] for row in world.objects()}
-    absent = [noun for noun in ("piano", "bathtub", "guitar", "stove") if noun not in kinds]
+    absent = [noun for noun in ("piano", "bathtub", "guitar", "aquarium") if noun not in kinds]
     for color in COLOR.findall(words)[:1]:
-        if lacking and not re.search(rf"{color}-|-{color}|light {color}|pale {color}", words):
+        if lacking and not re.search(rf"{color}-|-{color}|(?:light|pale|dark) {color}", words):
             yield words.replace(color, rng.choice(lacking), 1)
     nouns = {world.attributes(row["name"])["noun"] for row in world.objects()}
     # A piano leads to no room: of doors other words are swapped.
-    known = [noun for noun in nouns if re.search(rf"\b{noun}\b(?! stand| paper)", words)]
+    known = [noun for noun in nouns if re.search(rf"\b{noun}\b(?! stand| paper| bottle)", words)]
     known = [] if re.search("door|window", words) else known
     if known and absent:
         # The longest one is no part of another.
@@ -113,7 +113,7 @@ def test_one_swapped_word_is_found() -> None:
         for text, viewer in own_texts(world):
             scope = "house" if viewer is None else "view"
             for claim in world.check_text(text, viewer=viewer, scope=scope)["claims"]:
-                if rng.random() > (1.0 if ALL else 0.06):
+                if rng.random() > (0.3 if ALL else 0.06):
                     continue
                 for other in swaps(world, text, claim, rng):
                     whole = text[: claim["start"]] + other + text[claim["end"] :]
