@@ -184,8 +184,15 @@ fn broad_phase_pairs(
         boxes.push(Aabb::new(bounds.min, bounds.max).loosened(REACH_M));
         owners.push(owner);
     };
-    for piece in &model.static_pieces {
-        add(STATIC_OWNER, shapes::bounds(&piece.shape, &piece.pose));
+    let statics = |add: &mut dyn FnMut(u32, dwell_scene::Aabb)| {
+        for piece in &model.static_pieces {
+            add(STATIC_OWNER, shapes::bounds(&piece.shape, &piece.pose));
+        }
+    };
+    // In the order in which they are inserted.
+    let statics_last = model.inserts_statics_last();
+    if !statics_last {
+        statics(&mut add);
     }
     for (index, plan) in model.bodies.iter().enumerate() {
         let place = to_rapier(&state.part_pose[plan.root()]);
@@ -195,6 +202,9 @@ fn broad_phase_pairs(
                 shapes::bounds(&piece.shape, &(place * piece.pose)),
             );
         }
+    }
+    if statics_last {
+        statics(&mut add);
     }
     let tree = Bvh::from_leaves(BvhBuildStrategy::Binned, &boxes);
     let (mut met, mut near) = (0, 0);
@@ -212,8 +222,8 @@ fn broad_phase_pairs(
             if owners[first] != other {
                 near += 1;
                 found += 1;
-                // Of a pair with a static piece it looks through those of the body.
-                if owners[first] != STATIC_OWNER {
+                // Pairs with static pieces that are inserted last are added behind all portions.
+                if other != STATIC_OWNER {
                     steps[other as usize] += found;
                 }
             }
@@ -311,6 +321,50 @@ mod tests {
         // As many that hardly touch are inserted at once.
         let (model, state) = boxes(400, 0.15);
         assert_eq!(check(&model, &state).unwrap(), PairLoad::LOW);
+    }
+
+    /// rapier looks through the pairs of the piece that was inserted first, which would be the floor for each thing on it.
+    #[test]
+    fn many_things_on_one_floor_are_not_compared_with_each_other() {
+        let on_floor = |count: usize| {
+            let mut data = boxes(1, 0.0).0.house.data().clone();
+            let part = data.parts[PartId(0)].clone();
+            let object = data.objects[ObjectId(0)].clone();
+            let half = Vec3::new(2000.0, 0.1, 2000.0);
+            let mesh = data.meshes.push(Arc::new(Mesh::cuboid(-half, half)));
+            data.parts[PartId(0)] = Part {
+                fixed: true,
+                world_from_part: Pose::from_position(Vec3::new(0.0, -0.1, 0.0)),
+                mesh,
+                colliders: vec![dwell_scene::Collider::Cuboid {
+                    part_from_box: Pose::IDENTITY,
+                    half_extents: half,
+                }],
+                ..part.clone()
+            };
+            data.objects[ObjectId(0)].mobility = Mobility::Fixed;
+            for k in 1..=count {
+                let (x, z) = ((k % 100) as f32, (k / 100) as f32);
+                data.parts.push(Part {
+                    object: ObjectId::from_index(k),
+                    world_from_part: Pose::from_position(Vec3::new(x, 0.1, z)),
+                    ..part.clone()
+                });
+                data.objects.push(Object {
+                    name: format!("thing_{k}"),
+                    first_part: PartId::from_index(k),
+                    ..object.clone()
+                });
+            }
+            let model = PhysicsModel::new(Arc::new(House::new(data).unwrap()));
+            let state = State::new(&model.house);
+            let (near, work) = broad_phase_pairs(&model, &state).unwrap();
+            assert!(near >= count, "{near}");
+            work.steps.iter().sum::<u64>()
+        };
+        let (few, many) = (on_floor(5_000), on_floor(10_000));
+        assert!(few >= 5_000 * 4_999 / 2, "{few}");
+        assert!(many < 100_000, "{many}");
     }
 
     /// The page's table gives every cap of this file.

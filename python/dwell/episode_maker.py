@@ -135,8 +135,8 @@ class EpisodeMaker:
         left = iter(parts)
         # A few ahead, and no more: there may be very many.
         ahead: deque[tuple[range, Future[list[Episode]]]] = deque()
-        pool = ThreadPoolExecutor(workers)
-        stop = threading.Event()
+        stop, calls = threading.Event(), _native.StopToken()
+        pool = ThreadPoolExecutor(workers, initializer=calls.watch_this_thread)
         try:
             while True:
                 for part in itertools.islice(left, 2 * workers - len(ahead)):
@@ -148,6 +148,7 @@ class EpisodeMaker:
         finally:
             # Nobody waits for the pieces that are being made: their threads end with the next step.
             stop.set()
+            calls.stop()
             pool.shutdown(cancel_futures=True)
 
     def _some(self, places: range, workers: int, stop: threading.Event) -> list[Episode]:

@@ -129,9 +129,7 @@ class House:
     @staticmethod
     def builtins() -> list[str]:
         """The houses that come with dwell, as HOUSE strings."""
-        from dwell.machine_info import facts_of_machine
-
-        return [f"builtin:{name}" for name in facts_of_machine()["houses"]]
+        return [f"builtin:{name}" for name in _native.builtin_names()]
 
     @classmethod
     def generate(cls, seed: int, **spec: Unpack[GeneratorSettings]) -> House:

@@ -180,6 +180,12 @@ pub(crate) fn max_text_length() -> usize {
     dwell_semantics::instruct::MAX_TEXT_LEN
 }
 
+/// The names of the built-in houses.
+#[pyfunction]
+pub(crate) fn builtin_names() -> Vec<&'static str> {
+    dwell_houses::builtin::names().to_vec()
+}
+
 /// First seed, end and fields of a HOUSE string that stands for several houses; `None` for any other.
 #[pyfunction]
 pub(crate) fn seed_range(py: Python<'_>, house: &str) -> PyResult<Option<(u64, u64, String)>> {

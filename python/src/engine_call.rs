@@ -8,12 +8,16 @@ use pyo3::exceptions::PyKeyboardInterrupt;
 use pyo3::prelude::*;
 use std::cell::{Cell, RefCell};
 use std::panic::{AssertUnwindSafe, catch_unwind};
+use std::sync::Arc;
+use std::sync::atomic::{AtomicBool, Ordering};
 
 thread_local! {
     /// The exception that a handler of signals raised while an engine worked.
     static RAISED: RefCell<Option<PyErr>> = const { RefCell::new(None) };
     /// True while this thread is in the middle of a call and runs handlers.
     static IS_ASKING: Cell<bool> = const { Cell::new(false) };
+    /// What tells this thread, which hears no signals, that its calls shall stop.
+    static STOP: RefCell<Option<Arc<AtomicBool>>> = const { RefCell::new(None) };
     /// True in the thread that ends the interpreter, where it calls engines meanwhile: it keeps the GIL to the end.
     static ENDS_PYTHON: Cell<bool> = const { Cell::new(false) };
 }
@@ -23,7 +27,7 @@ pub(crate) trait EngineCall {
     /// Calls `work` without the GIL; its error becomes the exception it stands for, a panic `EngineBug`.
     ///
     /// On Python's main thread handlers of signals run meanwhile; what one raises stops `work` at its next
-    /// [`interrupt::unwind_if_cancelled`] and is raised here.
+    /// [`interrupt::unwind_if_cancelled`] and is raised here. A call of another thread is stopped by the thread's [`StopToken`].
     fn engine<T, E>(self, work: impl FnOnce() -> Result<T, E> + Send) -> PyResult<T>
     where
         T: Send,
@@ -51,6 +55,8 @@ impl EngineCall for Python<'_> {
             let outcome = catch_unwind(AssertUnwindSafe(|| {
                 let outcome = if hears_signals {
                     interrupt::interruptible(run_pending_handlers, work)
+                } else if STOP.with_borrow(Option::is_some) {
+                    interrupt::interruptible(is_told_to_stop, work)
                 } else {
                     Ok(work())
                 };
@@ -80,6 +86,38 @@ impl EngineCall for Python<'_> {
             (None, Ok(Err(fault))) => Err(to_python(fault)),
         }
     }
+}
+
+/// Stops the calls of threads that hear no signals, as those of a pool, soon after [`StopToken::stop`].
+#[pyclass(frozen, module = "dwell._native")]
+pub(crate) struct StopToken {
+    stopped: Arc<AtomicBool>,
+}
+
+#[pymethods]
+impl StopToken {
+    #[new]
+    fn new() -> Self {
+        Self {
+            stopped: Arc::new(AtomicBool::new(false)),
+        }
+    }
+
+    /// From now on the calls of the thread that calls this are stopped.
+    fn watch_this_thread(&self) {
+        STOP.with_borrow_mut(|slot| *slot = Some(self.stopped.clone()));
+    }
+
+    /// Stops the calls of the threads that watch; each raises `KeyboardInterrupt` there.
+    fn stop(&self) {
+        self.stopped.store(true, Ordering::Relaxed);
+    }
+}
+
+/// Returns whether the token of this thread was stopped.
+fn is_told_to_stop() -> bool {
+    let is_stopped = |stopped: &Arc<AtomicBool>| stopped.load(Ordering::Relaxed);
+    STOP.with_borrow(|slot| slot.as_ref().is_some_and(is_stopped))
 }
 
 /// Acquires the GIL in the middle of a call, for Python's code; without an interpreter the thread is parked for ever.

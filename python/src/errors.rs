@@ -133,7 +133,7 @@ fn kind(py: Python<'_>, name: &str, message: String) -> PyErr {
                 .iter()
                 .find(|(other, _)| *other == name)
                 .unwrap_or(&kinds[0]);
-            PyErr::from_type(found.1.bind(py).clone(), (printable(message),))
+            PyErr::from_type(found.1.bind(py).clone(), (shortened(printable(message)),))
         }
         Err(error) => error,
     }
@@ -159,6 +159,26 @@ pub(crate) fn printable(text: String) -> String {
         };
     }
     shown
+}
+
+/// The most characters of a message, and how many of its beginning and of its end are kept of a longer one.
+const MAX_MESSAGE: usize = 8000;
+const KEPT_MESSAGE: usize = 2000;
+
+/// A message that people can read: of one that quotes a megabyte of somebody's file, the beginning and the end.
+fn shortened(message: String) -> String {
+    // Characters have at least a byte.
+    if message.len() <= MAX_MESSAGE {
+        return message;
+    }
+    let count = message.chars().count();
+    if count <= MAX_MESSAGE {
+        return message;
+    }
+    let head: String = message.chars().take(KEPT_MESSAGE).collect();
+    let tail: String = message.chars().skip(count - KEPT_MESSAGE).collect();
+    let left_out = count - 2 * KEPT_MESSAGE;
+    format!("{head}... ({left_out} characters left out) ...{tail}")
 }
 
 /// Adds the tree to the module.

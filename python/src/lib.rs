@@ -51,6 +51,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     fork_safety::register(module.py())?;
     logs::install();
     panics::install_hook();
+    module.add_class::<engine_call::StopToken>()?;
     module.add_class::<house::PyHouse>()?;
     module.add_class::<world::PyWorld>()?;
     module.add_class::<navigation::PyNavigation>()?;
@@ -59,6 +60,7 @@ fn _native(module: &Bound<'_, PyModule>) -> PyResult<()> {
     module.add_class::<acoustics::PyAcousticScene>()?;
     module.add_class::<hdf5::PyHdf5>()?;
     module.add_class::<hrtf::PyHead>()?;
+    module.add_function(wrap_pyfunction!(build_info::builtin_names, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::actions, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::action_table, module)?)?;
     module.add_function(wrap_pyfunction!(build_info::chosen_actions, module)?)?;

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+from collections.abc import Callable
 from dataclasses import replace
 from pathlib import Path
 from typing import Any
@@ -221,6 +222,7 @@ CALLS = [
     ('W.act("drop", agent=9)', "no agent 9; there are 1, counted from 0"),
     ("W.render(agent=9)", "no agent 9; there are 1, counted from 0"),
     ("W.place_agent((1, 0, 1), agent=9)", "no agent 9; there are 1, counted from 0"),
+    ('W.play("a.mp3", at=0)', "sound is 'a.mp3'; allowed are files that end with .wav,"),
     ('W.play("phone", at=9)', "no agent 9; there are 1, counted from 0"),
     ('W.command_joint(9999, "off")', "no joint 9999; there are"),
     ("W.set_joints({9999: (0.0, 0.0)})", "no joint 9999; there are"),
@@ -313,3 +315,18 @@ def test_a_reset_mask_may_be_a_view() -> None:
         now = envs.reset(options={"reset_mask": mask})[1]["episode_id"]
         assert (now != ids).tolist() == mask.tolist()
         ids = now
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda name: dwell.House.open(name),
+        lambda name: dwell.World("builtin:studio", laws={name: {}}),
+        lambda name: dwell.World("builtin:studio", laws={"drag": {name: 1.0}}),
+        lambda name: DwellEnv("Free", houses="builtin:studio", task_settings={name: 1}),
+    ],
+)
+def test_no_message_is_as_long_as_the_text_that_it_quotes(call: Callable[[str], object]) -> None:
+    with pytest.raises(ValueError, match="xxx") as refused:
+        call("x" * 100_000)
+    assert len(str(refused.value)) < 10_000

@@ -222,6 +222,27 @@ def test_other_threads_go_on_when_the_main_one_is_interrupted() -> None:
     assert all((image == images[0]).all() for image in images)
 
 
+def test_calls_of_a_thread_are_stopped_by_its_token() -> None:
+    stop, begun, ended = _native.StopToken(), threading.Event(), []
+    # Of so many rays the response takes minutes.
+    scene = dwell.AcousticScene(dwell.House.shoebox((6.0, 3.0, 5.0)), rays=10_000_000)
+
+    def work() -> None:
+        stop.watch_this_thread()
+        begun.set()
+        try:
+            scene.impulse_response((1.0, 1.5, 1.0), (4.0, 1.5, 3.0))
+        except KeyboardInterrupt:
+            ended.append("stopped")
+
+    thread = threading.Thread(target=work)
+    thread.start()
+    begun.wait()
+    stop.stop()
+    thread.join(60.0)
+    assert ended == ["stopped"]
+
+
 @pytest.mark.parametrize("asked", ["threading.main_thread", "logging.getLogger"])
 def test_ctrl_c_while_the_first_call_asks_python_is_raised(asked: str) -> None:
     script = f"""

@@ -133,6 +133,13 @@ fn manifest(folder: &Path) -> Result<MeasurementDescription, CalibrationError> {
         })?;
     // Some editors begin with a byte order mark.
     let text = text.strip_prefix('\u{feff}').unwrap_or(&text);
+    // serde would take a list for the fields in their order.
+    if text.trim_start().starts_with('[') {
+        return Err(CalibrationError::Syntax {
+            at,
+            what: "found a list; expected values by name".to_owned(),
+        });
+    }
     serde_json::from_str(text).map_err(|error| CalibrationError::Syntax {
         at: format!("{at} line {}", error.line()),
         what: error.to_string(),

@@ -21,6 +21,8 @@ const WINDOW: i32 = 22;
 const MOST_UNPACKED: u64 = 1 << 30;
 /// Number of bytes that are packed within some 0.1 s at the usual quality.
 const QUICK: usize = 1 << 20;
+/// The most bytes that are packed at the best quality: those of thousands of things would take minutes.
+const MAX_HARDER: usize = 2 << 20;
 const NEVER: &str = "reading and writing memory cannot fail";
 /// Bytes that are unpacked at a time.
 const BUFFER: usize = 1 << 16;
@@ -37,14 +39,14 @@ pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
     pack_with(QUALITY, bytes, bytes.len(), base).expect(NEVER)
 }
 
-/// As [`pack`], but with a higher quality where that alone would give more than `most` bytes; it may still be more. Two
-/// megabytes then take seconds, instead of a tenth of one.
+/// As [`pack`], but with a higher quality where that alone would give more than `most` bytes; it may still be more. A
+/// megabyte then takes seconds, instead of a tenth of one; more than [`MAX_HARDER`] bytes are packed as usual.
 ///
 /// # Panics
 /// As [`pack`].
 pub fn pack_to_size(bytes: &[u8], base: &[u8], most: usize) -> Vec<u8> {
     let packed = pack(bytes, base);
-    if packed.len() <= most {
+    if packed.len() <= most || bytes.len() > MAX_HARDER {
         return packed;
     }
     pack_stoppably(BEST_QUALITY, bytes, base)
@@ -171,6 +173,14 @@ mod tests {
             plain.len()
         );
         assert_eq!(unpack(&harder, &[]).unwrap(), bytes);
+    }
+
+    /// At the best quality it would take half a minute.
+    #[test]
+    fn much_is_not_packed_harder() {
+        let mut stream = crate::random::RandomKey::root(4).stream();
+        let bytes: Vec<u8> = (0..=MAX_HARDER).map(|_| stream.below(7) as u8).collect();
+        assert_eq!(pack_to_size(&bytes, &[], 0), pack(&bytes, &[]));
     }
 
     /// A megabyte whose second half repeats the first one.

@@ -46,7 +46,8 @@ pub(crate) struct AssembledWorld {
 /// Number of fixed bodies: the house, and the anchor of joints.
 const FIXED_BODIES: usize = 2;
 
-/// Inserts the pieces of a house: statics, then bodies in order, at the given poses. `sizes`: gravity, m/s², the number of
+/// Inserts the pieces of a house: statics, then bodies in order, at the given poses; or statics last
+/// ([`PhysicsModel::inserts_statics_last`]). `sizes`: gravity, m/s², the number of
 /// agents to come, and the pairs of the pieces.
 pub(crate) fn assemble(
     model: &PhysicsModel,
@@ -64,7 +65,12 @@ pub(crate) fn assemble(
     engine.colliders = ColliderSet::with_capacity(pieces + agents);
     engine.bodies = RigidBodySet::with_capacity(model.bodies.len() + FIXED_BODIES + agents);
     engine.set_compliance(settings, compliance);
-    let mut entries = insert_statics(&mut engine, model, values);
+    let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
+    let mut entries = Vec::with_capacity(pieces + agents);
+    let statics_last = model.inserts_statics_last();
+    if !statics_last {
+        insert_statics((&mut engine, ground), model, values, &mut entries);
+    }
     let anchor = engine.bodies.insert(RigidBodyBuilder::fixed());
     let mut bodies = Vec::with_capacity(model.bodies.len());
     let mut pauses = crowding.pauses.iter().peekable();
@@ -91,6 +97,9 @@ pub(crate) fn assemble(
             event_force_n: settings.event_force_n(),
         };
         bodies.push(insert_body(&mut engine, plan, values, &mut entries, place));
+    }
+    if statics_last {
+        insert_statics((&mut engine, ground), model, values, &mut entries);
     }
     AssembledWorld {
         engine,
@@ -119,14 +128,13 @@ pub(crate) fn set_contact_properties(
         .user_data(index as u128)
 }
 
-/// Inserts all static pieces and returns the entries.
-pub(crate) fn insert_statics(
-    engine: &mut RapierWorld,
+/// Inserts all static pieces as colliders of the body of the house.
+fn insert_statics(
+    (engine, ground): (&mut RapierWorld, RigidBodyHandle),
     model: &PhysicsModel,
     values: ContactProperties<'_>,
-) -> Vec<ColliderMetadata> {
-    let ground = engine.bodies.insert(RigidBodyBuilder::fixed());
-    let mut entries = Vec::with_capacity(model.static_pieces.len());
+    entries: &mut Vec<ColliderMetadata>,
+) {
     for piece in &model.static_pieces {
         let entry = ColliderMetadata::new(
             piece.owner,
@@ -147,7 +155,6 @@ pub(crate) fn insert_statics(
             .insert_with_parent(builder, ground, &mut engine.bodies);
         entries.push(entry);
     }
-    entries
 }
 
 /// Inserts a rigid body with its colliders.

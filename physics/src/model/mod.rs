@@ -13,6 +13,10 @@ use dwell_scene::{Aabb, House, IdVec, ObjectId, PartId};
 use std::fmt;
 use std::sync::Arc;
 
+/// Moving pieces from which on static pieces are inserted behind them. rapier looks through all pairs of the piece that was
+/// inserted first for each that it adds: as many pieces on one floor would otherwise take a time that grows with their square.
+const MANY_MOVING_PIECES: usize = 10_000;
+
 /// The collision pieces and rigid bodies of a house. Construction reads every mesh; a world over it reads none.
 pub struct PhysicsModel {
     pub(crate) house: Arc<House>,
@@ -44,6 +48,13 @@ impl PhysicsModel {
     /// Returns the number of rigid bodies that can move.
     pub fn body_count(&self) -> usize {
         self.bodies.len()
+    }
+
+    /// Returns whether static pieces are inserted behind those that move. It depends on the house alone, so that all its worlds
+    /// number their pieces alike.
+    pub(crate) fn inserts_statics_last(&self) -> bool {
+        let moving = self.bodies.iter().map(|plan| plan.pieces.len());
+        moving.sum::<usize>() >= MANY_MOVING_PIECES
     }
 
     /// Returns the number of static pieces.

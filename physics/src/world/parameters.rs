@@ -8,6 +8,7 @@ use crate::error::PhysicsError;
 use crate::hands::HeldObject;
 use crate::joints::{self, ImposedJointState};
 use crate::laws;
+use crate::model::CollisionPiece;
 use dwell_scene::{AgentId, Id, State};
 use glam::Vec3;
 use rapier3d::dynamics::{MassProperties, RigidBody};
@@ -42,8 +43,14 @@ impl PhysicsWorld {
             .iter()
             .enumerate()
             .flat_map(|(body, plan)| plan.pieces.iter().map(move |piece| (piece, Some(body))));
-        // Entries are in the order of insertion: statics, bodies, agents.
-        for (index, (piece, body)) in statics.chain(moving).enumerate() {
+        // Entries are in the order of insertion: statics, bodies, agents; in houses of many pieces bodies, statics, agents.
+        let mut pieces: Vec<(&CollisionPiece, Option<usize>)> = Vec::new();
+        if model.inserts_statics_last() {
+            pieces.extend(moving.chain(statics));
+        } else {
+            pieces.extend(statics.chain(moving));
+        }
+        for (index, (piece, body)) in pieces.into_iter().enumerate() {
             self.dynamics.entries[index].surface = table.surface_materials(&piece.materials);
             let density = body.map(|body| {
                 let factor = model.bodies[body].mass_factor_of(piece, &weights.factors[body]);

@@ -2,7 +2,9 @@
 
 use crate::common::{Build, Piece};
 use dwell_physics::{PhysicsConfig, PhysicsError, PhysicsWorld};
-use dwell_scene::{House, Id, Joint, JointKind, Mesh, Mobility, Part, PartId, Pose, Servo, State};
+use dwell_scene::{
+    House, Id, Joint, JointKind, Mesh, Mobility, ObjectId, Part, PartId, Pose, Servo, State,
+};
 use glam::{Affine3A, Vec3};
 use std::sync::Arc;
 
@@ -127,6 +129,48 @@ fn more_bodies_than_a_world_holds_are_refused_by_number() {
     let said = refusal(build.house());
     let expected = "bodies that can move: 50001; physics holds at most 50000.";
     assert!(said.contains(expected), "{said}");
+}
+
+/// So many pieces on one floor are inserted before it, so that no list of pairs is long; all else is as in small houses.
+#[test]
+fn ten_thousand_things_rest_on_one_floor_and_a_snapshot_brings_them_back() {
+    let mut build = Build::room([110.0, 3.0, 110.0]);
+    let at = |k: usize| Vec3::new((k % 100) as f32 + 1.0, HALF_M, (k / 100) as f32 + 1.0);
+    let first = build.movable("thing_0", cube(at(0)));
+    let (object, part) = (
+        build.data.objects[first].clone(),
+        build.data.parts[PartId(0)].clone(),
+    );
+    for k in 1..10_000_usize {
+        let object = build.data.objects.push(dwell_scene::Object {
+            name: format!("thing_{k}"),
+            first_part: PartId::from_index(k),
+            ..object.clone()
+        });
+        build.data.parts.push(Part {
+            object,
+            world_from_part: Pose::from_position(at(k)),
+            ..part.clone()
+        });
+    }
+    let mut run = build.run();
+    assert_eq!((run.report.overlaps, run.report.moved.len()), (0, 0));
+    run.throw(first, Vec3::new(0.0, 2.0, 0.0));
+    run.steps(1);
+    let (state, bytes) = (run.state.clone(), run.world.snapshot());
+    run.steps(1);
+    let (place, after) = (run.position(first), run.state.hash());
+    assert!(place.y > HALF_M, "{place}");
+    run.state = state;
+    run.world.restore(&mut run.state, &bytes).unwrap();
+    run.steps(1);
+    assert_eq!(run.state.hash(), after);
+    // Values are those of the pieces that they were set for: nothing changes.
+    let before = run.hash();
+    run.world.apply_parameters(&mut run.state).unwrap();
+    assert_eq!(run.hash(), before);
+    let far = ObjectId::from_index(5000);
+    assert!((run.position(far).y - HALF_M).abs() < 1e-3);
 }
 
 /// The efforts of joints that act on each other are computed together; those of others are not.

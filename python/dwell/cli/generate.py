@@ -124,7 +124,8 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     made = 0
     workers = args.workers or os.cpu_count() or 1
     bar = ProgressBar()
-    pool = ThreadPoolExecutor(workers)
+    stop = _native.StopToken()
+    pool = ThreadPoolExecutor(workers, initializer=stop.watch_this_thread)
     # A few houses ahead, in order: the manifest is the same for any number of workers.
     ahead: deque[tuple[int, Future[dict[str, Any]]]] = deque()
     try:
@@ -146,6 +147,8 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
         print(f"dwell generate: {kept}", file=sys.stderr)
         raise
     finally:
+        # Nobody waits for the houses that are being made.
+        stop.stop()
         pool.shutdown(cancel_futures=True)
     return made
 

@@ -47,11 +47,15 @@ const FINITE: [&str; 34] = [
 /// Attributes whose ends may be infinite.
 const RANGES: [&str; 4] = ["range", "ctrlrange", "forcerange", "actfrcrange"];
 
-/// Refuses an element with a number that is not finite, or with commas between numbers; `at` gives its line.
+/// Refuses an element with a number that is none or not finite, or with commas between numbers; `at` gives its line.
 ///
 /// # Errors
 /// [`HousesError::Field`] names line, element and attribute.
 pub(super) fn check(node: Node<'_, '_>, at: impl Fn() -> FileLocation) -> Result<(), HousesError> {
+    // Its `gravity` is `enable` or `disable`.
+    if node.has_tag_name("flag") {
+        return Ok(());
+    }
     for attribute in node.attributes() {
         let name = attribute.name();
         let finite = FINITE.contains(&name);
@@ -69,7 +73,7 @@ pub(super) fn check(node: Node<'_, '_>, at: impl Fn() -> FileLocation) -> Result
         }
         let is_bad = |x: f64| x.is_nan() || (finite && x.is_infinite());
         let mut words = attribute.value().split_ascii_whitespace();
-        if let Some(word) = words.find(|word| word.parse().is_ok_and(is_bad)) {
+        if let Some(word) = words.find(|word| word.parse().map_or(true, is_bad)) {
             return refuse(node, name, &at(), "finite numbers", word);
         }
     }

@@ -313,6 +313,11 @@ pub(crate) const MJCF_CASES: &[Case] = &[
         &["m.xml:6", "body.pos", "finite numbers", "nan"],
     ),
     fails(
+        "a place of words",
+        |d| mjcf(d, "<body name=\"b\">", "<body name=\"b\" pos=\"1 x 0\">"),
+        &["m.xml:6", "body.pos", "finite numbers", "\"x\""],
+    ),
+    fails(
         "a place with commas",
         |d| mjcf(d, "<body name=\"b\">", "<body name=\"b\" pos=\"1, 0, 0\">"),
         &["m.xml:6", "body.pos", "no commas", "\"1, 0, 0\""],

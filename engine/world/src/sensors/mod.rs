@@ -231,10 +231,14 @@ impl SensorSetup<'_> {
         if agent.index() < self.config.agents.len() {
             return Ok(agent);
         }
+        let allowed = match self.config.agents.len() {
+            0 => "none: the world has no agents; give it one at least".to_owned(),
+            count => format!("below the number of agents, {count}"),
+        };
         Err(WorldError::Config {
             field: "agent",
             found: agent.0.to_string(),
-            allowed: format!("below the number of agents, {}", self.config.agents.len()),
+            allowed,
         })
     }
 }
