@@ -17,6 +17,7 @@ import dwell
 from dwell.challenge import Case, ChallengeSettings, calibrated_verdict, case, make, run, score
 from dwell.challenge.cases import STRATA, WORLDS, _kind_of
 from dwell.challenge.detection import Detector
+from dwell.challenge.noise import Noise
 from dwell.challenge.running import read_rows
 from dwell.challenge.scores import wilson_interval
 from dwell.challenge.writing import bundle_of
@@ -342,7 +343,10 @@ def test_a_strong_drag_is_named_and_nothing_is_not(tmp_path: Path) -> None:
     drag = next(effect for effect in FLIGHTS.effects if effect.id == "drag")
     strength = detector.strength(drag, 150.0, 1.0)
     assert strength is not None
-    plain = dataclasses.replace(first_of("nothing"), known=known)
+    noise = Noise("gaussian", 0.002, correlation=0.0, step=0.0, lost=0.02, gross=0.0)
+    plain = dataclasses.replace(
+        first_of("nothing"), world="flights", known=known, noise=noise, noise_is_known=True
+    )
     values: dict[str, tuple[float, ...]] = {"drag": drag.value(strength)}
     for name, hidden in {"drag": values, "nothing": {}}.items():
         folder = tmp_path / f"{name}.measured"

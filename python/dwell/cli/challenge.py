@@ -33,7 +33,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--out", type=path, required=True, metavar="FILE.jsonl", help="verdicts; of each shard one"
     )
     run.set_defaults(do=_run)
-    score = what.add_parser("score", help="scores of verdicts, with 95 % intervals")
+    score = what.add_parser("score", help="scores of verdicts, with their intervals")
     score.add_argument("verdicts", type=path, nargs="+", metavar="VERDICTS.jsonl")
     score.add_argument("--answers", type=path, nargs="+", required=True, metavar="FILE.jsonl")
     score.add_argument("--json", action="store_true", help="one JSON object on standard output")
