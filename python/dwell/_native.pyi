@@ -14,6 +14,9 @@ from typing_extensions import Self
 
 #: Mappings, lists, text and numbers.
 _Data: TypeAlias = Mapping[str, Any] | Sequence[Any]
+_Rows: TypeAlias = list[dict[str, Any]]
+_Id: TypeAlias = str | int
+_Names: TypeAlias = Sequence[str] | None
 
 __all__ = [
     "AcousticScene",
@@ -534,16 +537,10 @@ def world_select(
 ) -> tuple[str | None, str | None]:
     """The n-th of things in an order, ``None`` where it is undecided, and why it is."""
 
-def world_relations(
-    world: World, names: Sequence[str] | None, viewer: object
-) -> list[tuple[str, str, str]]: ...
-def world_relation_array(
-    world: World, names: Sequence[str] | None, viewer: object
-) -> NDArray[np.int32]: ...
+def world_relations(world: World, names: _Names, viewer: object) -> list[tuple[str, str, str]]: ...
+def world_relation_array(world: World, names: _Names, viewer: object) -> NDArray[np.int32]: ...
 def world_attributes(world: World, named: str | int) -> dict[str, object]: ...
-def world_color_names(
-    world: World, named: str | int, vocabulary: int
-) -> list[tuple[str, float]]: ...
+def world_color_names(world: World, named: _Id, vocabulary: int) -> list[tuple[str, float]]: ...
 def world_graph_json(world: World, viewer: object) -> str: ...
 def language_read(text: str) -> list[dict[str, Any]]:
     """The forms of a sentence, the preferred one first."""
@@ -551,9 +548,7 @@ def language_read(text: str) -> list[dict[str, Any]]:
 def language_say(form: Mapping[str, Any], seed: int | None) -> str | None:
     """A form in English; ``None`` where there are no words for it."""
 
-def world_refer(
-    world: World, named: str | int, viewer: object, strategy: str, seed: int | None
-) -> list[dict[str, Any]]:
+def world_refer(world: World, named: _Id, viewer: object, strategy: str, seed: int | None) -> _Rows:
     """The words by which a listener finds an object; none where no words do."""
 
 def world_check_text(world: World, text: str, viewer: object, agent: int | None) -> dict[str, Any]:

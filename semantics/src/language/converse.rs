@@ -2,16 +2,39 @@
 
 use super::from_tree::atomic_clause;
 use crate::form::{Clause, Modifier, Phrase, Quantifier};
-use crate::predicates;
+
+/// Relations with their converses, as predicates declare them: these know the language, which knows none of them.
+const CONVERSES: [(&str, &str); 7] = [
+    ("above", "below"),
+    ("behind", "in_front_of"),
+    ("contains", "in"),
+    ("held_by", "holds"),
+    ("in_room", "room_contains"),
+    ("left_of", "right_of"),
+    ("on", "supports"),
+];
+/// Symmetric relations of two things.
+const SYMMETRIC: [&str; 10] = [
+    "far",
+    "identical",
+    "near",
+    "next_to",
+    "open_to",
+    "opposite",
+    "same_color",
+    "same_kind",
+    "same_material",
+    "touching",
+];
 
 /// The relation that b has to a where a has this one to b; `None` where none is defined.
-fn converse_of(relation: &str) -> Option<&'static str> {
-    let predicate = predicates::find(relation).ok()?;
-    let properties = predicate.properties();
-    if properties.symmetric {
-        return Some(predicate.name());
-    }
-    properties.converse
+pub(super) fn converse_of(relation: &str) -> Option<&'static str> {
+    let pairs = CONVERSES.iter();
+    let found = pairs.flat_map(|(one, other)| [(*one, *other), (*other, *one)]);
+    let mut known = found.chain(SYMMETRIC.iter().map(|own| (*own, *own)));
+    known
+        .find(|(own, _)| *own == relation)
+        .map(|(_, converse)| converse)
 }
 
 /// The modifier of what `other` has a relation to: "with a lamp above it".

@@ -41,6 +41,12 @@ pub struct Language {
 }
 
 impl Language {
+    /// Returns the relation that b has to a where a has `relation` to b, as sentences with "with a lamp above it" are read; `None`
+    /// where there is none.
+    pub fn converse_of(relation: &str) -> Option<&'static str> {
+        converse::converse_of(relation)
+    }
+
     /// Builds a language from the rules in `grammar` (TOML) and the words in `lexicon` (TOML), with the nouns of the tables that
     /// ship with the engine.
     ///

@@ -5,10 +5,23 @@ use crate::common;
 use common::small_house;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentBody, AgentId, AgentState, House, ObjectId, PartId, Pose, State};
+use dwell_semantics::language::Language;
 use dwell_semantics::predicates::{Predicate, all, find};
 use dwell_semantics::{SemanticScene, Semantics, Term, Truth, Viewer};
 use glam::Vec3;
 use std::sync::Arc;
+
+/// What sentences are read by is what predicates declare.
+#[test]
+fn the_language_knows_the_converse_of_each_relation() {
+    for predicate in all() {
+        let properties = predicate.properties();
+        let is_own = properties.symmetric && predicate.name() != "between";
+        let declared = is_own.then_some(predicate.name()).or(properties.converse);
+        let read = Language::converse_of(predicate.name());
+        assert_eq!(read, declared, "{}", predicate.name());
+    }
+}
 
 /// Throws every object somewhere over the floors, turned about the vertical, and the first thing into a hand.
 fn shaken(house: &House, seed: u64) -> State {
