@@ -40,7 +40,7 @@ pub fn pack(bytes: &[u8], base: &[u8]) -> Vec<u8> {
 }
 
 /// As [`pack`], but with a higher quality where that alone would give more than `most` bytes; it may still be more. A
-/// megabyte then takes seconds, instead of a tenth of one; more than [`MAX_HARDER`] bytes are packed as usual.
+/// megabyte then takes seconds, instead of a tenth of one; more than 2 MiB are packed as usual.
 ///
 /// # Panics
 /// As [`pack`].
