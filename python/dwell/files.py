@@ -176,18 +176,48 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         _refuse_existing(path)
     place = path if new else _place(path)
     make_folder(place.parent)
+    with _errors_named(path), _draft(place) as folder:
+        draft = folder / "file"
+        draft.touch(0o600)
+        yield draft
+        os.chmod(draft, 0o644)
+        if new:
+            _link(os.fspath(draft), place)
+        else:
+            os.replace(draft, place)
+
+
+@contextlib.contextmanager
+def atomic_folder(path: _Name) -> Iterator[Path]:
+    """An empty folder that becomes ``path`` when all went well.
+
+    Args:
+        path: What shall be there and is not; folders above it are made.
+
+    Raises:
+        OSError: The system refuses.
+        FileExistsError: Something stands there.
+    """
+    place = Path(path)
+    _refuse_existing(place)
+    make_folder(place.parent)
+    with _errors_named(place), _draft(place) as folder:
+        draft = folder / "folder"
+        draft.mkdir()
+        yield draft
+        _refuse_existing(place)
+        os.rename(draft, place)
+
+
+@contextlib.contextmanager
+def _errors_named(path: _Name) -> Iterator[None]:
+    """Gives errors about drafts the name that people know."""
     try:
-        with _draft(place) as draft:
-            yield draft
-            os.chmod(draft, 0o644)
-            if new:
-                _link(os.fspath(draft), place)
-            else:
-                os.replace(draft, place)
+        yield
     except OSError as error:
         # What people know is the name that they gave.
         named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
-        is_ours = named is None or any(is_draft(name) for name in (named.name, named.parent.name))
+        is_ours = named is None or any(is_draft(name) for name in named.parts[-3:])
         if is_ours and error.errno is not None:
             rename_error(error, path)
         elif is_ours:
@@ -241,17 +271,15 @@ def is_draft(name: str) -> bool:
 
 @contextlib.contextmanager
 def _draft(place: Path) -> Iterator[Path]:
-    """An empty file in a folder of its own beside ``place``, both gone afterwards.
+    """An empty folder beside ``place``, gone afterwards, in which a file or folder is made.
 
     The folder's lock says that its process is alive, as those of the engine's drafts do: whoever
-    makes a draft for the same name removes those of processes that were killed. The file itself has
+    makes a draft for the same name removes those of processes that were killed. What is in it has
     none, which HDF5 would take for another writer's.
     """
     folder, handle = _claim_draft(place)
     try:
-        file = folder / "file"
-        file.touch(0o600)
-        yield file
+        yield folder
     finally:
         try:
             if _is_at(handle, folder):

@@ -18,7 +18,7 @@ from dwell.challenge import Case, ChallengeSettings, calibrated_verdict, case, m
 from dwell.challenge.cases import STRATA, WORLDS, _kind_of
 from dwell.challenge.detection import Detector
 from dwell.challenge.noise import Noise
-from dwell.challenge.running import read_rows
+from dwell.challenge.rows import read_answers, read_verdicts
 from dwell.challenge.scores import wilson_interval
 from dwell.challenge.writing import bundle_of
 
@@ -250,7 +250,7 @@ def test_who_knows_has_full_scores_and_who_guesses_has_not() -> None:
     found = score(ANSWERS, [{"case": row["case"], **perfect(row)} for row in ANSWERS])
     assert found["judged"] == 9
     assert (found["false_alarms"]["hits"], found["false_alarms"]["of"]) == (0, 2)
-    assert found["physical_names_of_faults"]["hits"] == 0
+    assert found["wrong_names_of_faults"]["hits"] == 0
     of = {"top_1_from_10": 1, "top_1_5_to_10": 1, "set": 3, "inseparable": 1, "both_of_two": 1}
     for name, count in {**of, "outside_unnamed": 1}.items():
         assert (found[name]["hits"], found[name]["of"]) == (count, count), name
@@ -259,7 +259,7 @@ def test_who_knows_has_full_scores_and_who_guesses_has_not() -> None:
     assert found["mean_set_size"] == pytest.approx(4.0 / 3.0)
     drag = {"kind": "named", "sets": [["drag"]], "parameters": {"drag": {"c_d": [0.6, 0.55, 0.7]}}}
     found = score(ANSWERS, [{"case": row["case"], **drag} for row in ANSWERS])
-    assert found["false_alarms"]["share"] == found["physical_names_of_faults"]["share"] == 1.0
+    assert found["false_alarms"]["share"] == found["wrong_names_of_faults"]["share"] == 1.0
     assert found["outside_unnamed"]["hits"] == found["both_of_two"]["hits"] == 0
     assert found["single_name_of_two"]["share"] == 1.0
     assert (found["set"]["hits"], found["set"]["of"]) == (1, 3)
@@ -294,7 +294,45 @@ def test_a_run_goes_on_where_it_was_killed(tmp_path: Path) -> None:
     assert [new for _, new in run(tmp_path / "cases", verdicts, method)] == [False, False, True]
     assert verdicts.read_bytes() == whole
     assert len(asked) == 4
-    assert len(list(read_rows(verdicts))) == 3
+    assert len(list(read_verdicts(verdicts))) == 3
+
+
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        ("[]", "expected an object with a case"),
+        ('{"case": "a", "sets": [], "parameters": {}}', "kind is None; expected one of nothing"),
+        ('{"case": "a", "kind": "named", "sets": ["drag"], "parameters": {}}', "sets is"),
+        (
+            '{"case": "a", "kind": "named", "sets": [["x"]], "parameters": {"x": {"y": [1, 2]}}}',
+            r"parameters is .*\[value, low, high\]",
+        ),
+    ],
+)
+def test_rows_that_are_no_verdicts_are_told_with_file_line_and_field(
+    tmp_path: Path, row: str, told: str
+) -> None:
+    path = tmp_path / "rows.jsonl"
+    path.write_text('{"case": "b", "kind": "nothing", "sets": [], "parameters": {}}\n' + row + "\n")
+    with pytest.raises(ValueError, match=rf"rows\.jsonl line 2: {told}"):
+        list(read_verdicts(path))
+    with pytest.raises(ValueError, match=r"rows\.jsonl line 1: hidden is None"):
+        list(read_answers(path))
+
+
+def test_a_method_that_says_nothing_is_told(tmp_path: Path) -> None:
+    list(make(tmp_path / "cases", ChallengeSettings(cases=1, seed=2)))
+    verdicts = tmp_path / "verdicts.jsonl"
+    with pytest.raises(ValueError, match=r"the verdict on .*: kind is None"):
+        list(run(tmp_path / "cases", verdicts, lambda _: {}))
+    assert not verdicts.exists()
+
+
+def test_of_two_verdicts_on_a_case_the_last_counts() -> None:
+    right = {"case": ANSWERS[0]["case"], **perfect(ANSWERS[0])}
+    wrong = {**right, "kind": "named", "sets": [["drag"]]}
+    found = score(ANSWERS, [wrong, right])
+    assert (found["judged"], found["false_alarms"]["hits"]) == (1, 0)
 
 
 @pytest.mark.parametrize(

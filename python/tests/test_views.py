@@ -177,7 +177,7 @@ def test_a_stopped_job_goes_on_and_shards_make_the_same(folder: Path, tmp_path: 
     # What a kill leaves in the middle of a house.
     second = dataset.house_folder(out, 1)
     if second.exists():
-        second.rename(second.with_name(f".{second.name}.part"))
+        second.rename(second.with_name(f".{second.name}.partial-0"))
     for k in (0, 1):
         list(dataset.make(houses, out, SETTINGS, shard=(k, 2)))
     assert digest(out) == whole

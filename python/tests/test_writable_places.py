@@ -1,4 +1,4 @@
-"""Where files can stand, which is known before anything is made."""
+"""Where files can stand, and folders that are there whole or not at all."""
 
 from __future__ import annotations
 
@@ -20,3 +20,27 @@ def test_where_no_file_can_stand_is_known_before_anything_is_made(tmp_path: Path
     with pytest.raises(OSError, match="is a folder"):
         files.check_writable(tmp_path)
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "nowhere"]
+
+
+def test_a_folder_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
+    place = tmp_path / "above" / "set"
+    with files.atomic_folder(place) as draft:
+        (draft / "a").write_text("whole")
+        assert not place.exists()
+        # Another process makes the same meanwhile, and is the second to be ready.
+        with (
+            pytest.raises(FileExistsError, match="is there already") as refused,
+            files.atomic_folder(place) as other,
+        ):
+            assert other != draft
+            (other / "a").write_text("another")
+            place.mkdir()
+        assert refused.value.filename == str(place)
+        place.rmdir()
+    assert (place / "a").read_text() == "whole"
+    with pytest.raises(FileExistsError, match="is there already"), files.atomic_folder(place):
+        pass
+    with pytest.raises(RuntimeError), files.atomic_folder(tmp_path / "none"):
+        raise RuntimeError
+    assert sorted(entry.name for entry in tmp_path.iterdir()) == ["above"]
+    assert sorted(entry.name for entry in place.parent.iterdir()) == ["set"]

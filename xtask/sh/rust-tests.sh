@@ -1,5 +1,5 @@
 #!/bin/sh
-# Unit and integration tests, by cargo-nextest where it is installed. Of the long ones, `#[ignore = "long"]`, a share (share.sh);
+# Unit and integration tests, by cargo-nextest where it is installed. Of the long ones, `#[ignore = "long: ..."]`, a share (share.sh);
 # all of them with DWELL_TEST_ALL=1.
 set -u
 cd "$(dirname "$0")/../.." || exit 1

@@ -5,7 +5,8 @@ no trace of its cause: what is known of the situation is drawn before the cause,
 are random.
 """
 
-from dwell.challenge.cases import Case, ChallengeSettings, answer_rows, case
+from dwell.challenge.cases import Case, ChallengeSettings, case
+from dwell.challenge.rows import read_answers, read_verdicts
 from dwell.challenge.running import calibrated_verdict, run
 from dwell.challenge.scores import score
 from dwell.challenge.writing import make
@@ -13,10 +14,11 @@ from dwell.challenge.writing import make
 __all__ = [
     "Case",
     "ChallengeSettings",
-    "answer_rows",
     "calibrated_verdict",
     "case",
     "make",
+    "read_answers",
+    "read_verdicts",
     "run",
     "score",
 ]

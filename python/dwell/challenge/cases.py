@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import dataclasses
-from collections.abc import Iterator
 from typing import Any
 
 import numpy as np
@@ -16,7 +15,7 @@ from dwell.challenge.flights import Flights
 from dwell.challenge.noise import Noise
 from dwell.challenge.servos import Servos
 
-__all__ = ["STRATA", "WORLDS", "Case", "ChallengeSettings", "answer_rows", "case"]
+__all__ = ["STRATA", "WORLDS", "Case", "ChallengeSettings", "case"]
 
 #: The worlds. To add one: a file with a class like :class:`Flights`, and its name here.
 WORLDS: dict[str, World] = {world.name: world for world in (Flights(), Servos())}
@@ -178,9 +177,3 @@ def _hidden(
         if len(values) == wanted:
             return values
     return None
-
-
-def answer_rows(settings: ChallengeSettings) -> Iterator[dict[str, Any]]:
-    """The answers of all cases, in order."""
-    for number in range(settings.cases):
-        yield case(number, settings).answer()

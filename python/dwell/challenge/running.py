@@ -9,9 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
-from dwell.files import lines, open_file, parse_json
+from dwell.challenge.rows import check_verdict, read_verdicts
+from dwell.challenge.writing import bundle_of
 
-__all__ = ["calibrated_verdict", "read_rows", "run"]
+__all__ = ["calibrated_verdict", "run"]
 
 Method = Callable[[Path], dict[str, Any]]
 
@@ -64,17 +65,19 @@ def run(
     Raises:
         ConfigError: There are no bundles.
         MeasuredDataError: A bundle cannot be used.
+        ValueError: A verdict, of the file or of the method, lacks a field or has a wrong one.
     """
     which, shards = shard
     names = sorted(path.name.removesuffix(".measured") for path in folder.glob("*.measured"))
     if not names:
         raise ConfigError(f"{folder}: no bundles NAME.measured")
-    known = {row["case"] for row in read_rows(verdicts)} if verdicts.exists() else set()
+    known = {row["case"] for row in read_verdicts(verdicts)} if verdicts.exists() else set()
     _drop_cut_line(verdicts)
     for name in names[which::shards]:
         is_new = name not in known
         if is_new:
-            row = {"case": name, **method(folder / f"{name}.measured")}
+            row = {"case": name, **method(bundle_of(folder, name))}
+            check_verdict(row, f"the verdict on {name}")
             with open(verdicts, "a", encoding="utf-8") as file:
                 file.write(json.dumps(row, allow_nan=False) + "\n")
                 file.flush()
@@ -88,19 +91,3 @@ def _drop_cut_line(path: Path) -> None:
         with open(path, "r+b") as file:
             text = file.read()
             file.truncate(text.rfind(b"\n") + 1)
-
-
-def read_rows(path: Path) -> Iterator[dict[str, Any]]:
-    """The rows of a file of answers or verdicts; a last line that was cut is left out.
-
-    Raises:
-        ValueError: A line is no object with a case.
-    """
-    with open_file(path) as file:
-        for number, line in enumerate(lines(file, path), start=1):
-            if not line.endswith(b"\n"):
-                return
-            row = parse_json(line, f"{path} line {number}")
-            if not isinstance(row, dict) or not isinstance(row.get("case"), str):
-                raise ValueError(f"{path} line {number}: expected an object with a case")
-            yield row

@@ -56,21 +56,23 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         Each score with ``hits``, ``of``, ``share`` and its 95 % ``interval`` by Wilson's formula:
 
         ``false_alarms``: nothing-cases with a name, or a choice of names. ``not_quiet``: those
-        with any verdict but "nothing". ``physical_names_of_faults``: cases of a fault alone of
-        which a law is named, or a choice without the fault. ``top_1_from_10`` and
-        ``top_1_5_to_10``: cases of one effect at a d' of 10 and more or 5 to 10, whose rivals are
-        a d' above 5 away: it alone is named. ``set``: cases of one effect or a fault, at 10 and
-        more: it is among the explanations; ``mean_set_size`` of theirs. ``inseparable``: cases of
-        one with a rival within a d' of 1, at 10 and more: several are given, the truth among them.
-        ``both_of_two``: two effects at 10 and more each that no single one imitates, both named and
-        no other.
-        ``single_name_of_two``: of those one name alone. ``outside_unnamed``: no name for what is
-        outside the library, at 10 and more. ``coverage``: 95 % intervals of named right ones that
-        hold the truth; ``median_error`` of their values. ``curve``: cases of one effect or fault
-        that are separable, named right, by d'. ``judged``: number of cases.
+        with any verdict but "nothing". ``wrong_names_of_faults``: cases of a fault alone of which
+        anything else is named, a law or another fault, or a choice without it.
+        ``top_1_from_10`` and ``top_1_5_to_10``: cases of one effect at a d' of 10 and more or 5 to
+        10, whose rivals are a d' above 5 away: it alone is named. ``set``: cases of one effect or a
+        fault, at 10 and more: it is among the explanations; ``mean_set_size`` of theirs.
+        ``inseparable``: cases of one with a rival within a d' of 1, at 10 and more: several are
+        given, the truth among them. ``both_of_two``: two effects at 10 and more each that no single
+        one imitates, both named and no other. ``single_name_of_two``: of those one name alone.
+        ``outside_unnamed``: no name for what is outside the library, at 10 and more. ``coverage``:
+        95 % intervals of named right ones that hold the truth; ``median_error`` of their values.
+        ``curve``: cases of one effect or fault named right, by d', but for those with a rival that
+        is much nearer to the truth than nothing is. ``judged``: number of cases.
     """
     known = {row["case"]: row for row in answers}
-    pairs = [(known[row["case"]], row) for row in verdicts if row["case"] in known]
+    # Of several verdicts on one case the last.
+    judged = {row["case"]: row for row in verdicts}
+    pairs = [(known[name], row) for name, row in judged.items() if name in known]
     by_kind: dict[str, list[tuple[_Row, _Row]]] = {}
     for answer, verdict in pairs:
         by_kind.setdefault(answer["kind"], []).append((answer, verdict))
@@ -88,9 +90,7 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         "judged": len(pairs),
         "false_alarms": _share(_names(verdict) for _, verdict in nothing),
         "not_quiet": _share(verdict["kind"] != "nothing" for _, verdict in nothing),
-        "physical_names_of_faults": _share(
-            _is_blamed_on_physics(*row) for row in by_kind.get("fault", [])
-        ),
+        "wrong_names_of_faults": _share(_is_named_wrong(*row) for row in by_kind.get("fault", [])),
         "top_1_from_10": _share(_is_named_right(*row) for row in laws if _d_prime(row[0]) >= 10.0),
         "top_1_5_to_10": _share(
             _is_named_right(*row) for row in laws if 5.0 <= _d_prime(row[0]) < 10.0
@@ -140,7 +140,7 @@ def _is_named_right(answer: _Row, verdict: _Row) -> bool:
     return bool(verdict["kind"] == "named") and _has_truth(answer, verdict)
 
 
-def _is_blamed_on_physics(answer: _Row, verdict: _Row) -> bool:
+def _is_named_wrong(answer: _Row, verdict: _Row) -> bool:
     return _names(verdict) and not _has_truth(answer, verdict)
 
 

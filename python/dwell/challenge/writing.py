@@ -4,14 +4,13 @@ from __future__ import annotations
 
 import json
 import os
-import shutil
 from collections.abc import Iterator
 from pathlib import Path
 
 import numpy as np
 
 from dwell.challenge.cases import WORLDS, Case, ChallengeSettings, case
-from dwell.files import make_folder
+from dwell.files import atomic_folder, make_folder
 
 __all__ = ["bundle_of", "make"]
 
@@ -39,11 +38,8 @@ def make(
         folder = bundle_of(out, one.name)
         is_new = not folder.exists()
         if is_new:
-            draft = folder.with_name(f".{folder.name}.part")
-            shutil.rmtree(draft, ignore_errors=True)
-            draft.mkdir()
-            _write(draft, one, settings.seed)
-            os.replace(draft, folder)
+            with atomic_folder(folder) as draft:
+                _write(draft, one, settings.seed)
             os.utime(folder, (_FILE_TIME_S, _FILE_TIME_S))
         yield one, folder, is_new
 

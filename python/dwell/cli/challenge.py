@@ -3,7 +3,6 @@
 from __future__ import annotations
 
 import argparse
-import functools
 import json
 from typing import Any
 
@@ -83,11 +82,10 @@ def _run(args: argparse.Namespace) -> int:
 
 
 def _score(args: argparse.Namespace) -> int:
-    from dwell.challenge import score
-    from dwell.challenge.running import read_rows
+    from dwell.challenge import read_answers, read_verdicts, score
 
-    answers = [row for file in args.answers for row in read_rows(file)]
-    verdicts = [row for file in args.verdicts for row in read_rows(file)]
+    answers = [row for file in args.answers for row in read_answers(file)]
+    verdicts = [row for file in args.verdicts for row in read_verdicts(file)]
     found = score(answers, verdicts)
     if args.json:
         print_json(found)
@@ -106,9 +104,8 @@ def _score(args: argparse.Namespace) -> int:
 
 
 def _line(name: str, value: dict[str, Any]) -> str:
-    told = functools.partial("{:5.1f} %".format)
     if value["share"] is None:
         return f"{name:<26} no cases"
     low, high = (100.0 * end for end in value["interval"])
-    share = told(100.0 * value["share"])
-    return f"{name:<26} {share}  ({low:.1f} to {high:.1f})  {value['hits']} of {value['of']}"
+    share = 100.0 * value["share"]
+    return f"{name:<26} {share:5.1f} %  ({low:.1f} to {high:.1f})  {value['hits']} of {value['of']}"

@@ -5,8 +5,6 @@ from __future__ import annotations
 import dataclasses
 import json
 import math
-import os
-import shutil
 import zlib
 from pathlib import Path
 from typing import TYPE_CHECKING, Any
@@ -17,6 +15,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError
 from dwell.arguments import number_in_range
 from dwell.camera import Camera
+from dwell.files import atomic_folder
 
 if TYPE_CHECKING:
     from dwell.world import World
@@ -178,16 +177,11 @@ def write_clip(clip: Clip, out: Path) -> None:
 
     from dwell.sounds import write_wav
 
-    if os.path.lexists(out):
-        raise FileExistsError(17, "is there already; name a new folder", os.fspath(out))
-    draft = out.with_name(f".{out.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    draft.mkdir(parents=True)
-    for k, picture in enumerate(clip.pictures):
-        Image.fromarray(picture).save(draft / f"{k:03}.png", compress_level=1)
-    write_wav(draft / "sound.wav", clip.sound, clip.rate_hz)
-    (draft / "clip.json").write_text(json.dumps(clip.row, indent=1) + "\n", "utf-8")
-    os.replace(draft, out)
+    with atomic_folder(out) as draft:
+        for k, picture in enumerate(clip.pictures):
+            Image.fromarray(picture).save(draft / f"{k:03}.png", compress_level=1)
+        write_wav(draft / "sound.wav", clip.sound, clip.rate_hz)
+        (draft / "clip.json").write_text(json.dumps(clip.row, indent=1) + "\n", "utf-8")
 
 
 def _way(world: World, rng: np.random.Generator) -> NDArray[np.float32]:

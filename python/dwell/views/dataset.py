@@ -20,7 +20,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
 from dwell.arguments import boolean, integer_in_range
-from dwell.files import lines, open_file, parse_json
+from dwell.files import atomic_folder, lines, open_file, parse_json
 from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
 from dwell.views.questions import ask
@@ -199,17 +199,15 @@ def _make_house(name: str, number: int, folder: Path, settings: ViewSettings) ->
 
 
 def _write_house(made: Sequence[ViewRecord], number: int, folder: Path) -> None:
-    draft = folder.with_name(f".{folder.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    draft.mkdir(parents=True)
-    rows = []
-    for record in made:
-        record.row["id"] = f"{number:08}-{record.row['id']}"
-        record.row["images"] = _write_images(draft, record)
-        rows.append(json.dumps(record.row, ensure_ascii=False) + "\n")
-    (draft / _RECORDS).write_text("".join(rows), "utf-8")
+    # One without records is none.
     shutil.rmtree(folder, ignore_errors=True)
-    os.replace(draft, folder)
+    with atomic_folder(folder) as draft:
+        rows = []
+        for record in made:
+            record.row["id"] = f"{number:08}-{record.row['id']}"
+            record.row["images"] = _write_images(draft, record)
+            rows.append(json.dumps(record.row, ensure_ascii=False) + "\n")
+        (draft / _RECORDS).write_text("".join(rows), "utf-8")
 
 
 def _write_images(folder: Path, record: ViewRecord) -> dict[str, str]:

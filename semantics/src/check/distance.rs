@@ -33,6 +33,12 @@ fn distance_m(scene: &SemanticScene<'_>, one: Term, other: Term) -> Option<f32> 
     Some(gap.max(Vec3::ZERO).length())
 }
 
+/// The distance from an eye to the nearest point of the box around a thing, m; `None` as of [`distance_m`].
+fn eye_distance_m(scene: &SemanticScene<'_>, eye: Vec3, term: Term) -> Option<f32> {
+    let bounds = bounds_of(scene, term)?;
+    Some(eye.distance(eye.clamp(bounds.min, bounds.max)))
+}
+
 impl Checker<'_> {
     /// The distance between two things, or from where the listener looks from, rounded to whole metres.
     pub(super) fn distance_between(
@@ -41,16 +47,14 @@ impl Checker<'_> {
         from: &Phrase,
     ) -> Result<u32, UndecidedReason> {
         let subject = self.unique_referent(subject)?;
-        if let (Phrase::Listener, Some(viewer)) = (from, &self.listener.viewer) {
-            let eye = viewer.world_from_camera.position;
-            let bounds = bounds_of(self.scene, subject).ok_or(UndecidedReason::WrongKind)?;
-            let nearest = eye.clamp(bounds.min, bounds.max);
-            return Ok(rounded_distance_m(eye.distance(nearest)));
-        }
-        let from = self.unique_referent(from)?;
-        distance_m(self.scene, subject, from)
-            .map(rounded_distance_m)
-            .ok_or(UndecidedReason::WrongKind)
+        let distance_m = if let (Phrase::Listener, Some(viewer)) = (from, &self.listener.viewer) {
+            eye_distance_m(self.scene, viewer.world_from_camera.position, subject)
+        } else {
+            let from = self.unique_referent(from)?;
+            distance_m(self.scene, subject, from)
+        };
+        let metres = distance_m.map(rounded_distance_m);
+        metres.ok_or(UndecidedReason::WrongKind)
     }
 
     /// A thing is as far from another, or from where the listener looks from, as said, when rounded to whole metres.
@@ -69,13 +73,7 @@ impl Checker<'_> {
         };
         if let (Phrase::Listener, Some(viewer)) = (from, &self.listener.viewer) {
             let eye = viewer.world_from_camera.position;
-            let body = |terms: &[Term]| {
-                let bounds = bounds_of(self.scene, terms[0]);
-                decide(
-                    bounds.map(|bounds| eye.distance(eye.clamp(bounds.min, bounds.max))),
-                    terms,
-                )
-            };
+            let body = |terms: &[Term]| decide(eye_distance_m(self.scene, eye, terms[0]), terms);
             return self.quantify(std::slice::from_ref(subject), &mut Vec::new(), &body);
         }
         let body = |terms: &[Term]| decide(distance_m(self.scene, terms[0], terms[1]), terms);

@@ -3,7 +3,8 @@
 use super::from_tree::atomic_clause;
 use crate::form::{Clause, Modifier, Phrase, Quantifier};
 
-/// Relations with their converses, as predicates declare them: these know the language, which knows none of them.
+/// Relations with their converses, as predicates declare them. The language does not depend on predicates; a test holds the two against
+/// each other.
 const CONVERSES: [(&str, &str); 7] = [
     ("above", "below"),
     ("behind", "in_front_of"),

@@ -298,7 +298,6 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
     })
 }
 
-/// "Stands next to the door".
 /// The phrase of an item such as "a clock on the wall": indefinite, with what tells where.
 fn placed_indefinite(item: &Tree) -> Option<Phrase> {
     match existence::items_from_tree(item)? {
@@ -311,6 +310,7 @@ fn placed_indefinite(item: &Tree) -> Option<Phrase> {
     }
 }
 
+/// "Stands next to the door".
 pub(super) fn posture_phrase(posture: &Tree, said: &Tree) -> Tree {
     Tree::apply("vp_standing", [posture.clone(), said.clone()])
 }

@@ -7,9 +7,9 @@ folder.
 from __future__ import annotations
 
 import importlib
-import os
-import shutil
 from pathlib import Path
+
+from dwell.files import atomic_folder
 
 #: Form and what it is; the module of that name writes it.
 FORMS = {
@@ -38,15 +38,6 @@ def export(folder: Path, out: Path, form: str) -> None:
     """
     if form not in FORMS:
         raise ValueError(f"form is {form!r}; allowed are {', '.join(FORMS)}")
-    if os.path.lexists(out):
-        raise FileExistsError(17, "is there already; name a new folder", os.fspath(out))
     module = importlib.import_module(f"dwell.views.formats.{form}")
-    draft = out.with_name(f".{out.name}.part")
-    shutil.rmtree(draft, ignore_errors=True)
-    draft.mkdir(parents=True)
-    try:
+    with atomic_folder(out) as draft:
         module.write(folder, draft)
-        os.replace(draft, out)
-    except BaseException:
-        shutil.rmtree(draft, ignore_errors=True)
-        raise
