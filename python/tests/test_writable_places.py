@@ -22,19 +22,22 @@ def test_where_no_file_can_stand_is_known_before_anything_is_made(tmp_path: Path
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["file", "nowhere"]
 
 
+def overtaken(place: Path, first: Path) -> None:
+    """Makes a folder while another takes its place."""
+    with files.atomic_folder(place) as draft:
+        assert draft != first
+        (draft / "a").write_text("another")
+        place.mkdir()
+
+
 def test_a_folder_is_there_whole_or_not_at_all(tmp_path: Path) -> None:
     place = tmp_path / "above" / "set"
     with files.atomic_folder(place) as draft:
         (draft / "a").write_text("whole")
         assert not place.exists()
         # Another process makes the same meanwhile, and is the second to be ready.
-        with (
-            pytest.raises(FileExistsError, match="is there already") as refused,
-            files.atomic_folder(place) as other,
-        ):
-            assert other != draft
-            (other / "a").write_text("another")
-            place.mkdir()
+        with pytest.raises(FileExistsError, match="is there already") as refused:
+            overtaken(place, draft)
         assert refused.value.filename == str(place)
         place.rmdir()
     assert (place / "a").read_text() == "whole"
