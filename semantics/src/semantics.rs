@@ -47,11 +47,8 @@ impl Semantics {
     pub fn new(house: &Arc<House>) -> Self {
         let state = State::new(house);
         let threads = Threads::resolve(None);
-        // The triangles are baked at first use: by one thread, so that whoever else asks for them waits for no other work.
         let ((), (paints, structure, rest_extents)) = threads.join(
-            || {
-                house.geometry();
-            },
+            || house.bake_geometry(threads),
             || {
                 let gathered = (
                     MaterialColors::gather(house),

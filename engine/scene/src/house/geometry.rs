@@ -5,6 +5,7 @@ use crate::bvh::{TriangleAttributes, TriangleBvh};
 use crate::ids::{EntityId, Id, IdVec, MaterialId, MeshId, PartId, StructureId};
 use crate::interrupt;
 use crate::mesh::Mesh;
+use crate::parallel::Threads;
 use glam::{Affine3A, Mat3A, Vec3};
 use std::sync::Arc;
 
@@ -59,7 +60,7 @@ pub struct Geometry {
 
 impl Geometry {
     /// Bakes the tables of a checked house.
-    pub(super) fn bake(data: &HouseData) -> Self {
+    pub(super) fn bake(data: &HouseData, threads: Threads) -> Self {
         let structure_count = data.structure.len();
         let mut placed = Vec::with_capacity(structure_count + data.parts.len());
         for (id, piece) in data.structure.iter_ids() {
@@ -72,7 +73,7 @@ impl Geometry {
             });
         }
         let mut movable = Vec::new();
-        let mut mesh_bvh: IdVec<MeshId, _> = IdVec::filled(None, data.meshes.len());
+        let mut moves: IdVec<MeshId, bool> = IdVec::filled(false, data.meshes.len());
         for (id, part) in data.parts.iter_ids() {
             placed.push(PlacedMesh {
                 owner: SurfaceOwner::Part(id),
@@ -83,49 +84,25 @@ impl Geometry {
             });
             if !part.fixed {
                 movable.push(id);
-                let mesh = &data.meshes[part.mesh];
-                mesh_bvh[part.mesh].get_or_insert_with(|| {
-                    interrupt::unwind_if_cancelled();
-                    Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles))
-                });
+                moves[part.mesh] = true;
             }
         }
-        let mut baked = Mesh::default();
-        let mut static_triangles = Vec::new();
-        for (k, thing) in placed.iter().enumerate() {
-            if let SurfaceOwner::Part(part) = thing.owner
-                && !data.parts[part].fixed
-            {
-                continue;
-            }
-            interrupt::unwind_if_cancelled();
-            let mesh = &data.meshes[thing.mesh];
-            let base = baked.positions.len() as u32;
-            baked.positions.extend(
-                mesh.positions
-                    .iter()
-                    .map(|p| thing.world_from_mesh.transform_point3(*p)),
-            );
-            baked
-                .triangles
-                .extend(mesh.triangles.iter().map(|t| t.map(|vertex| vertex + base)));
-            let sources = (0..mesh.triangles.len() as u32).map(|triangle| StaticTriangleSource {
-                placed: k as u32,
-                triangle,
-            });
-            static_triangles.extend(sources);
-        }
-        let tag = |index: usize| {
-            TriangleAttributes::new(placed[static_triangles[index].placed as usize].entity.0)
-        };
-        let static_bvh = TriangleBvh::build_tagged(&baked.positions, &baked.triangles, tag);
-        let static_bvh = Arc::new(static_bvh);
+        let ((static_bvh, static_triangles), mesh_bvh) = threads.join(
+            || bake_static(data, &placed),
+            || {
+                threads.map(data.meshes.len(), |k| {
+                    let mesh = &data.meshes[MeshId::from_index(k)];
+                    moves[MeshId::from_index(k)]
+                        .then(|| Arc::new(TriangleBvh::build(&mesh.positions, &mesh.triangles)))
+                })
+            },
+        );
         Self {
-            static_bvh,
+            static_bvh: Arc::new(static_bvh),
             static_triangles,
             placed,
             movable,
-            mesh_bvh,
+            mesh_bvh: mesh_bvh.into(),
             structure_count,
         }
     }
@@ -134,6 +111,42 @@ impl Geometry {
     pub fn placed_part(&self, part: PartId) -> &PlacedMesh {
         &self.placed[self.structure_count + part.index()]
     }
+}
+
+/// The triangles that never move, in world space, and the origin of each.
+fn bake_static(
+    data: &HouseData,
+    placed: &[PlacedMesh],
+) -> (TriangleBvh, Vec<StaticTriangleSource>) {
+    let mut baked = Mesh::default();
+    let mut sources = Vec::new();
+    for (k, thing) in placed.iter().enumerate() {
+        if let SurfaceOwner::Part(part) = thing.owner
+            && !data.parts[part].fixed
+        {
+            continue;
+        }
+        interrupt::unwind_if_cancelled();
+        let mesh = &data.meshes[thing.mesh];
+        let base = baked.positions.len() as u32;
+        baked.positions.extend(
+            mesh.positions
+                .iter()
+                .map(|p| thing.world_from_mesh.transform_point3(*p)),
+        );
+        baked
+            .triangles
+            .extend(mesh.triangles.iter().map(|t| t.map(|vertex| vertex + base)));
+        let triangles = 0..mesh.triangles.len() as u32;
+        sources.extend(triangles.map(|triangle| StaticTriangleSource {
+            placed: k as u32,
+            triangle,
+        }));
+    }
+    let tag =
+        |index: usize| TriangleAttributes::new(placed[sources[index].placed as usize].entity.0);
+    let bvh = TriangleBvh::build_tagged(&baked.positions, &baked.triangles, tag);
+    (bvh, sources)
 }
 
 /// The surface that a ray hits.

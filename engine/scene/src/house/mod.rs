@@ -20,6 +20,7 @@ pub use shoebox::ShoeboxMaterials;
 use crate::error::SceneError;
 use crate::fixtures::Receptacle;
 use crate::ids::{IdVec, ObjectId, RoomId};
+use crate::parallel::Threads;
 use footprint::FootprintBounds;
 use std::ops::Deref;
 use std::sync::OnceLock;
@@ -53,9 +54,20 @@ impl House {
         })
     }
 
-    /// The triangles of the house baked for rays; made at first use.
+    /// The triangles of the house baked for rays; made at first use, by the caller's thread: whoever else asks at that moment
+    /// waits for no other work.
     pub fn geometry(&self) -> &Geometry {
-        self.geometry.get_or_init(|| Geometry::bake(&self.data))
+        self.geometry
+            .get_or_init(|| Geometry::bake(&self.data, Threads::ONE))
+    }
+
+    /// Makes [`Self::geometry`] by several threads, unless it exists. Nobody waits for this call: who asks meanwhile makes
+    /// the same.
+    pub fn bake_geometry(&self, threads: Threads) {
+        if self.geometry.get().is_none() {
+            // The one that loses a race is dropped; they are equal.
+            let _ = self.geometry.set(Geometry::bake(&self.data, threads));
+        }
     }
 
     /// Returns a hash of this house: its tables (names, places, masses, collision pieces, joints) and the triangles of its
