@@ -6,7 +6,7 @@ use super::questions::question;
 use super::sets;
 use super::to_tree::TreeBuilder;
 use super::verb_phrases::clause;
-use crate::form::{Clause, Description, Noun, Phrase, Question};
+use crate::form::{Clause, Description, Noun, Phrase, Quality, Question};
 use crate::grammar::Tree;
 
 /// The clauses of a tree that asks which is true; `None` for other trees.
@@ -53,8 +53,35 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             clauses.reverse();
             clauses
         }
-        ("which_closer_or", [subject, one, other]) => closer(subject, one, other)?,
-        ("which_is_closer", [reference, one, other]) => closer(reference, one, other)?,
+        ("which_closer_or" | "which_is_closer", [of, one, other]) => {
+            closer(&phrase(of)?, [phrase(one)?, phrase(other)?])
+        }
+        ("which_kind_is_closer_than", [kind, of, one, other]) => {
+            let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
+            closer(&phrase(of)?, named)
+        }
+        ("which_kind_is_closer", [kind, order, of, one, other]) => {
+            let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
+            let mut clauses = closer(&phrase(of)?, named);
+            if entry_id(order)? == "farthest_from" {
+                clauses.reverse();
+            }
+            clauses
+        }
+        ("which_kind_compared" | "which_kind_compared_less", [kind, word, one, other]) => {
+            let [one, other] = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
+            let mut clauses = comparison_both_ways(word, one, other)?;
+            if function.ends_with("_less") {
+                clauses.reverse();
+            }
+            clauses
+        }
+        ("alternatives_made_of", [subject, one, other]) => {
+            qualities(subject, [one, other], Quality::Material)?
+        }
+        ("alternatives_color", [subject, one, other]) => {
+            qualities(subject, [one, other], Quality::Color)?
+        }
         _ => return None,
     })
 }
@@ -111,15 +138,30 @@ fn comparison_both_ways(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<C
     ])
 }
 
-fn closer(subject: &Tree, one: &Tree, other: &Tree) -> Option<Vec<Clause>> {
-    let (subject, one, other) = (phrase(subject)?, phrase(one)?, phrase(other)?);
+fn qualities(
+    subject: &Tree,
+    words: [&Tree; 2],
+    quality: impl Fn(String) -> Quality,
+) -> Option<Vec<Clause>> {
+    let subject = phrase(subject)?;
+    let mut clauses = Vec::with_capacity(2);
+    for word in words {
+        clauses.push(Clause::Is {
+            subject: subject.clone(),
+            quality: quality(entry_id(word)?),
+        });
+    }
+    Some(clauses)
+}
+
+fn closer(subject: &Phrase, [one, other]: [Phrase; 2]) -> Vec<Clause> {
     let to = |near: &Phrase, far: &Phrase| {
         atomic_clause(
             "closer_to",
             vec![subject.clone(), near.clone(), far.clone()],
         )
     };
-    Some(vec![to(&one, &other), to(&other, &one)])
+    vec![to(&one, &other), to(&other, &one)]
 }
 
 impl TreeBuilder<'_> {

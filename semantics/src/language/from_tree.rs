@@ -265,11 +265,17 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
         ]),
         ("nothing_but" | "only_exists", [added, exception]) => {
             let added = modifier(added)?;
-            let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
-            let only = Description::new(Quantifier::Exactly(1), any).with_modifier(added.clone());
             let Phrase::Described(exception) = phrase(exception)? else {
                 return None;
             };
+            let count = match exception.quantifier {
+                Quantifier::Exactly(count) => count,
+                Quantifier::Some | Quantifier::The => 1,
+                _ => return None,
+            };
+            let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            let only =
+                Description::new(Quantifier::Exactly(count), any).with_modifier(added.clone());
             if function == "only_exists" && matches!(exception.quantifier, Quantifier::Exactly(_)) {
                 // "There is only one bottle in the hall" counts bottles.
                 return Some(Clause::Exists(exception.with_modifier(added).into()));
@@ -467,8 +473,12 @@ pub(super) fn room(tree: &Tree) -> Option<Phrase> {
     let description = match (function, arguments) {
         ("room_the", [own]) => kind(own, Quantifier::The)?,
         ("room_a", [own]) => kind(own, Quantifier::Some)?,
-        ("room_with_walls", [own, color]) => {
-            let mut room = kind(own, Quantifier::The)?;
+        ("room_with_walls" | "room_some_with_walls", [own, color]) => {
+            let quantifier = match function {
+                "room_with_walls" => Quantifier::The,
+                _ => Quantifier::Some,
+            };
+            let mut room = kind(own, quantifier)?;
             room.colors.push(entry_id(color)?);
             room
         }

@@ -1,10 +1,22 @@
 //! Clauses that people say in ways of their own and the engine says otherwise.
 
-use super::from_tree::{atomic_clause, entry_id, place_of, room};
+use super::from_tree::{atomic_clause, entry_id, modifier_clause, place_of, room};
 use super::phrases::{modifier, nominal, phrase};
-use super::{converse, existence, numbers, places, verb_phrases};
+use super::{converse, existence, numbers, places, questions, sets, verb_phrases};
 use crate::form::{Clause, Modifier, Phrase, Quantifier};
 use crate::grammar::Tree;
+
+/// "I see a chair but no table."
+fn one_but_none(item: &Tree, noun: &Tree, added: &Modifier) -> Option<Clause> {
+    let Phrase::Described(item) = existence::items_from_tree(item)? else {
+        return None;
+    };
+    let none = nominal(noun)?.with_quantifier(Quantifier::No);
+    Some(Clause::All(vec![
+        Clause::Exists(item.with_modifier(added.clone()).into()),
+        Clause::Exists(none.with_modifier(added.clone()).into()),
+    ]))
+}
 
 /// The clause of a tree; `None` for other trees.
 pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
@@ -43,6 +55,13 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             };
             let there = own.with_modifier(Modifier::new("in_room", [room(place)?]));
             atomic_clause(&entry_id(relation)?, vec![there.into(), Phrase::EachOther])
+        }
+        ("see_but_no", [item, noun]) => one_but_none(item, noun, &Modifier::new("visible", []))?,
+        ("exists_but_no", [item, noun, added]) => one_but_none(item, noun, &modifier(added)?)?,
+        ("of_set_one_is" | "of_set_one_is_less", [set, added, word]) => {
+            let order = questions::superlative_of(&entry_id(word)?, function.ends_with("_less"))?;
+            let one = questions::with_selection(sets::set_description(set)?, order, None);
+            modifier_clause(one.into(), modifier(added)?)
         }
         ("most_are" | "whether_most_are", [set, said]) => numbers::majority(set, said)?,
         ("neither_says", [one, other, said]) => {

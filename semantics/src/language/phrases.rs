@@ -144,6 +144,10 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             selected(noun, order, number(place)?, None)
         }
         ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
+        ("i_superlative_of", [order, noun, whole]) => {
+            let part = nominal(noun)?.with_modifier(Modifier::new("belongs_to", [phrase(whole)?]));
+            Some(questions::with_selection(part, &entry_id(order)?, None).into())
+        }
         ("selected_to" | "i_selected_to" | "selected_apposed", [noun, order, reference]) => {
             selected(noun, order, 1, Some(phrase(reference)?))
         }
@@ -156,6 +160,12 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("structure_at" | "i_structure_at", [noun, side])
         | ("structure_flank" | "i_structure_flank", [side, noun]) => {
             places::structure(noun, Some(places::side_from_tree(side)?))
+        }
+        ("piece_with" | "i_piece_with", [noun, added]) => {
+            // What hangs on a wall is not carried by it.
+            let added = modifier(added)?;
+            (added.predicate != "supports").then_some(())?;
+            places::structure(noun, Some(added))
         }
         (
             "structure_of" | "i_structure_of" | "piece_of" | "i_piece_of" | "pieces_of"
@@ -449,7 +459,7 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
                 ..Modifier::new("has", [nominal(content)?.into()])
             });
         }
-        ("modifier_around", [other, relation]) => {
+        ("modifier_around" | "modifier_stranded", [other, relation]) => {
             return converse::modifier(&entry_id(relation)?, phrase(other)?);
         }
         ("modifier_same_color", [other]) => ("same_color".to_owned(), vec![phrase(other)?]),

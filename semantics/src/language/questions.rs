@@ -68,6 +68,17 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             let within = Modifier::new("belongs_to", [phrase(subject)?]);
             count(nominal(noun)?.with_modifier(within))
         }
+        ("what_besides", [named, relation, landmark]) => {
+            let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
+            let others = Description::new(Quantifier::Some, any).with_modifier(Modifier {
+                negated: true,
+                ..Modifier::new(Modifier::IDENTICAL, [phrase(named)?])
+            });
+            which(
+                Some(others),
+                atomic_clause(&entry_id(relation)?, vec![Phrase::Hole, phrase(landmark)?]),
+            )
+        }
         ("what_inside", []) => which(
             None,
             atomic_clause("in", vec![Phrase::Hole, Phrase::Pronoun]),

@@ -60,6 +60,33 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             steps.insert(0, act("approach", thing)?);
             steps
         }
+        ("step_on_reaching_room", [last, place]) => {
+            vec![RequestStep::GoTo(room(place)?), step(last)?]
+        }
+        ("step_on_reaching_room_then", [then, place, rest]) => {
+            let mut steps = vec![RequestStep::GoTo(room(place)?), step(then)?];
+            steps.extend(plan(rest)?);
+            steps
+        }
+        ("before_doing", [last, before]) => {
+            let mut steps = plan(before)?;
+            steps.push(step(last)?);
+            steps
+        }
+        ("after_done" | "after_doing", [done, rest]) => {
+            let mut steps = vec![done_step(done)?];
+            steps.extend(plan(rest)?);
+            steps
+        }
+        ("step_after_done" | "step_after_doing", [last, done]) => {
+            vec![done_step(done)?, step(last)?]
+        }
+        ("step_before_doing", [first, done]) => vec![step(first)?, done_step(done)?],
+        ("before_doing_it", [done, before]) => {
+            let mut steps = plan(before)?;
+            steps.push(done_step(done)?);
+            steps
+        }
         ("group", [only]) => coordinated_steps(only)?,
         ("group_then", [first, rest]) => {
             let mut steps = coordinated_steps(first)?;
@@ -68,6 +95,17 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         _ => return None,
     })
+}
+
+/// The step that "once you have opened the door" and "after opening the door" speak of.
+fn done_step(tree: &Tree) -> Option<RequestStep> {
+    match parts(tree)? {
+        (function, [object]) => {
+            let (_, verb) = function.split_once('_')?;
+            act(verb, object)
+        }
+        _ => None,
+    }
 }
 
 /// Puts what is fetched, or any thing that is picked up, in place of "it" in the step after it, which says where it goes: "Fetch
@@ -135,6 +173,12 @@ fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("go_around_to", [around, to]) => {
             vec![act("go_around", around)?, act("approach", to)?]
         }
+        ("past_and_through", [past, through]) => {
+            vec![act("go_past", past)?, act("go_through", through)?]
+        }
+        ("through_and_past", [through, past]) => {
+            vec![act("go_through", through)?, act("go_past", past)?]
+        }
         ("go_through", [to, way]) => {
             vec![act("go_through", way)?, RequestStep::GoTo(room(to)?)]
         }
@@ -158,6 +202,17 @@ fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Do {
         verb: verb.to_owned(),
         object: phrase(object)?,
+    })
+}
+
+/// "Look in the cupboard for a cup."
+fn find_there(object: &Tree, there: Modifier) -> Option<RequestStep> {
+    let Phrase::Described(object) = phrase(object)? else {
+        return None;
+    };
+    Some(RequestStep::Do {
+        verb: "find".to_owned(),
+        object: object.with_modifier(there).into(),
     })
 }
 
@@ -213,6 +268,13 @@ fn step(tree: &Tree) -> Option<RequestStep> {
                 verb: entry_id(verb)?,
                 object: description.with_modifier(in_room).into(),
             }
+        }
+        ("look_in_for", [relation, place, object]) => find_there(
+            object,
+            Modifier::new(&entry_id(relation)?, [phrase(place)?]),
+        )?,
+        ("look_inside_for", [object]) => {
+            find_there(object, Modifier::new("in", [Phrase::Pronoun]))?
         }
         ("leave", [object]) => refrain("pick_up", object)?,
         ("do_close_behind", [object]) => act("close", object)?,
