@@ -73,6 +73,14 @@ class FloorChart:
                 void = found >= reach_m - 0.05
                 self._voids[self._cells(place - ways[void] * level * _MOUNT_M / rise)] = True
 
+    def blocked(self, places: Array) -> NDArray[np.bool_]:
+        """Whether something is in the way at places, shape (n, 2) m."""
+        rows, columns = self._cells(places)
+        if not len(self._hits):
+            return np.zeros(len(places), np.bool_)
+        found: NDArray[np.bool_] = self._hits[:, rows, columns].any(axis=0)
+        return found | self._voids[rows, columns]
+
     def bumped(self, place: Array, way: Array, step: int) -> None:
         """Something was in the way, in the direction ``way``, that no scan told."""
         ahead = place + 0.3 * way
