@@ -53,15 +53,18 @@ _SCAN, _SWING, _SWING_RAD = 0.6, 0.3, np.deg2rad(40.0)
 #: So many steps within so little, m, and it goes some other way for so many.
 _STUCK_STEPS, _STUCK_M, _DETOUR_M, _DETOUR_STEPS = 40, 0.35, 3.0, 25
 #: Where it has heard nothing it goes so far somewhere, for so many steps.
-_EXPLORE_M, _EXPLORE_STEPS = 6.0, 80
+_EXPLORE_M, _EXPLORE_STEPS, _SEARCH_STEPS = 6.0, 80, 32
+#: A way may end so many m further from its goal for each m that it is shorter: what nobody saw may
+#: be a wall.
+_LENGTH = 0.2
 #: How far a step leads.
 _STEP_M = 0.1
-#: It does not walk nearer than this.
-_KEEP_M = 1.0
+#: It does not walk nearer than this, and walks away from who comes nearer than that, m.
+_KEEP_M, _YIELDS_M = 1.2, 0.7
 #: Sounds that things of houses make, too; how soon it notices what is always heard from a place,
 #: how much that is on average, and how far around it nothing is believed then, m.
 _OF_THINGS = ("radio", "television")
-_NOTICES, _THING, _STILL_M = 0.015, 0.9, 0.6
+_NOTICES, _THING, _STILL_M = 0.01, 1.2, 0.6
 #: How soon it notices what is always in the way, and how often that must have been: others walk on.
 _SEES, _ALWAYS = 0.05, 0.7
 #: How far around it looks for ways of sound, m, and after how many steps again.
@@ -72,7 +75,7 @@ _PARTS_M = [np.array([k, j]) * 0.08 for k in (-1, 0, 1) for j in (-1, 0, 1)]
 _BODIES_M, _OWN = 0.4, 3.0
 #: Sure of less than this it has not heard where the sound is; of more than that
 #: it explores no further; of less than the last it does not wait.
-_SURE, _FOUND, _LOST = 0.03, 0.1, 0.3
+_SURE, _FOUND, _LOST = 0.03, 0.35, 0.3
 
 
 class FollowByEars:
@@ -210,9 +213,10 @@ class FollowByEars:
     def _think(self, place: Array) -> None:
         """Where the sound is by now, and the way there."""
         source, sure = self.belief.best()
-        if sure < _LOST and np.hypot(*(source - place)) < 2.0 * _KEEP_M:
+        if sure < _LOST and self._detour is None and np.hypot(*(source - place)) < 2.0 * _KEEP_M:
             # It would have been heard here.
-            source, sure = self.belief.best(beyond=(place, 2.0 * _KEEP_M))
+            elsewhere, _ = self.belief.best(beyond=(place, 2.0 * _KEEP_M))
+            self._detour, self._explores = (elsewhere, self._step + _SEARCH_STEPS), True
         self._source = source if sure > _SURE else None
         if self._explores and sure > _FOUND:
             self._detour, self._explores = None, False
@@ -222,8 +226,12 @@ class FollowByEars:
             self._explores = True
         goal = self._source if self._detour is None else self._detour[0]
         assert goal is not None
-        if float(np.hypot(*(goal - place))) > _KEEP_M:
-            way = self._chart.way(place, goal, self._step)
+        away_m = float(np.hypot(*(goal - place)))
+        if self._detour is None and away_m < _YIELDS_M and sure > _LOST:
+            # Out of its way.
+            self._way = place + _YIELDS_M * (place - goal) / max(away_m, 1e-6)
+        elif away_m > _KEEP_M:
+            way = self._chart.way(place, goal, self._step, length=_LENGTH)
             self._way = None if way is None else place + way
         self._notice_stuck(place)
 
