@@ -80,8 +80,9 @@ class FloorChart:
         rows, columns = self._cells(places)
         if not len(self._hits):
             return np.zeros(len(places), np.bool_)
-        found: NDArray[np.bool_] = self._hits[:, rows, columns].any(axis=0)
-        return found | self._voids[rows, columns]
+        found: NDArray[np.bool_] = np.any(self._hits[:, rows, columns], axis=0)
+        found = np.logical_or(found, self._voids[rows, columns])
+        return found
 
     def bumped(self, place: Array, way: Array, step: int) -> None:
         """Something was in the way, in the direction ``way``, that no scan told."""
