@@ -30,6 +30,7 @@ from dwell.envs.parallel import DwellParallelEnv
 from dwell.envs.parallel_recorder import ParallelReplayRecorder
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
 from dwell.envs.parallel_vector_recorder import ParallelVectorReplayRecorder
+from dwell.envs.supersuit_compatible import SuperSuitCompatible
 from dwell.envs.torchrl_compatible import TorchRLCompatible
 
 if TYPE_CHECKING:
@@ -40,6 +41,7 @@ __all__ = [
     "DwellParallelVectorEnv",
     "ParallelReplayRecorder",
     "ParallelVectorReplayRecorder",
+    "SuperSuitCompatible",
     "TorchRLCompatible",
     "env",
     "parallel_env",
