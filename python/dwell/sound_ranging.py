@@ -53,8 +53,9 @@ _SHADOW = 0.8
 _NEAR_M, _DIRECT = 1.2, 0.4
 #: What takes off places that are nearer than this by a metre and from which nothing is heard.
 _SILENT, _SILENT_M = 1.2, 2.2
-#: That is known of sounds that have at least this share of the frequencies.
-_BROAD = 0.12
+#: That is known of sounds that have at least this share of the frequencies; of others, whose
+#: correlations have many peaks, arrivals are known to this distance, m.
+_BROAD, _FEW_REACH_M = 0.12, 3.5
 #: Likelihood of a peak, by how often it is above what is everywhere.
 _SLOPE, _FLOOR, _CAP = 0.75, 1.5, 5.0
 #: Sounds of a few tones, and their frequencies, Hz.
@@ -68,13 +69,16 @@ _SINGLE_TONES = ("alarm",)
 _PHASOR_S = 0.006
 #: What is kept of what was heard, frames; where the level of a beginning is taken, s after it.
 _KEPT_FRAMES, _PLATEAU_S = 6, (0.05, 0.1)
-#: A beginning must be louder than what was before it by this factor; it is noticed at this share of
-#: the level that it comes to, so long after it arrived, s.
-_CLEAR, _ONSET, _RISE_S = 4.0, 0.1, 0.0028
+#: A beginning must be louder than what was before it by this factor; it is noticed when it is by
+#: that one and has this share of the level that it comes to, so long after it arrived, s.
+_CLEAR, _NOTICED, _ONSET, _RISE_S = 4.0, 3.0, 0.1, 0.0028
 #: How far off such a distance is, m: it is too long where the sound went around something.
 _SPREAD_M, _LONGER_M, _OUTLIERS, _GAIN = 0.4, 1.0, 0.03, 20.0
-#: Differences of phase; of level above so many Hz, at the side, and how far off they are, dB.
-_PHASE_WEIGHT, _SHADOW_HZ, _AT_THE_SIDE_DB, _SPREAD_DB = 0.7, 2000.0, 9.0, 6.0
+#: Weight of differences of phase, and by how much more those count that are not ambiguous: of tones
+#: with periods of more than twice the longest delay between the ears.
+_AMBIGUOUS_HZ, _PHASE_WEIGHT, _PLAIN = 750.0, 0.7, 2.5
+#: Differences of level count above so many Hz; that of a source at the side, and how far off, dB.
+_SHADOW_HZ, _AT_THE_SIDE_DB, _SPREAD_DB = 2000.0, 9.0, 6.0
 
 
 class Pose(NamedTuple):
@@ -224,7 +228,7 @@ class BroadSound:
         ratio[(away_m < _NEAR_M) & (told < _DIRECT * loudest)] = 0.0
         found: Array = _SLOPE * np.clip(ratio - _FLOOR, 0.0, _CAP)
         if sounds.sum() < _BROAD * self._band.sum():
-            return found
+            return np.where(away_m < _FEW_REACH_M, found, 0.0)
         # A source next to the ears would be heard.
         missing = np.clip(1.0 - ratio / _FLOOR, 0.0, 1.0)
         found -= missing * _SILENT * np.clip(_SILENT_M - away_m, 0.0, 1.0)
@@ -283,23 +287,25 @@ class TonalSound:
             turned = piece * np.exp(-2j * np.pi * tone_hz * times_s)
             tones.append([np.convolve(ear, taper, "same") for ear in turned])
         phasors: NDArray[np.complex128] = np.array(tones)
-        level = np.sqrt((np.abs(phasors[0]) ** 2).sum(axis=0))
+        powers = (np.abs(phasors) ** 2).sum(axis=1)
         made = begin - before
-        noise = float(np.median(level[: made - width // 2]))
+        # Of what was there before: other sounds may hide some of the tones.
+        noises = np.median(powers[:, : made - width // 2], axis=1, keepdims=True)
+        level = np.sqrt((powers / (noises + 1e-14)).mean(axis=0))
         plateau = [made + round(s * rate) for s in _PLATEAU_S]
         loud = float(np.median(level[plateau[0] : plateau[1]]))
-        if loud < _CLEAR * noise:
+        if loud < _CLEAR:
             return
-        bound = max(3.0 * noise, _ONSET * loud)
+        bound = max(_NOTICED, _ONSET * loud)
         arrived = made + int(np.argmax(level[made:] > bound))
         delay_s = (arrived - made) / rate - _RISE_S
         piece_of = slice(arrived, arrived + width)
         first = np.array([ear[piece_of] for ear in phasors.reshape(-1, phasors.shape[-1])])
         ears = first.reshape(len(self._tones), 2, -1)
         cross = (ears[:, 0] * ears[:, 1].conj()).sum(axis=1)
-        powers = (np.abs(ears) ** 2).sum(axis=2)
+        of_ears = (np.abs(ears) ** 2).sum(axis=2)
         which = min((begin + round(delay_s * rate)) // self._samples, len(self._poses) - 1)
-        told = np.stack([cross.real, cross.imag, powers[:, 0], powers[:, 1]])
+        told = np.stack([cross.real, cross.imag, of_ears[:, 0], of_ears[:, 1]])
         self._told = (delay_s, told, self._poses[max(which, 0)])
 
     def likelihood(self, cells: Array, *, again: bool = False) -> Array | None:
@@ -318,7 +324,8 @@ class TonalSound:
             coherence = np.hypot(real, imaginary) / np.sqrt(left * right + 1e-30)
             phase = np.arctan2(imaginary, real)
             expected = 2.0 * np.pi * tone_hz * of_cells.itd_s
-            side += _PHASE_WEIGHT * coherence * np.cos(phase - expected)
+            weight = _PHASE_WEIGHT * (_PLAIN if tone_hz < _AMBIGUOUS_HZ else 1.0)
+            side += weight * coherence * np.cos(phase - expected)
             if tone_hz > _SHADOW_HZ:
                 found_db = np.clip(10.0 * np.log10((left + 1e-30) / (right + 1e-30)), -15.0, 15.0)
                 away_db = found_db - _AT_THE_SIDE_DB * np.sin(of_cells.azimuth_rad)
