@@ -18,7 +18,9 @@ _LOW_M, _HIGH_M, _MOUNT_M = 0.15, 1.6, 0.5
 #: Within this what was seen before is forgotten where rays pass, m.
 _NEAR_M = 6.0
 #: Steps after which a bump is forgotten.
-_BUMP_STEPS = 150
+_BUMP_STEPS = 50
+#: Half the width of somebody who stands at a goal, m.
+_BODY_M = 0.3
 #: Where ways end that lead into what nobody saw, m from here.
 _WINDOW = 70
 
@@ -73,6 +75,15 @@ class FloorChart:
                 void = found >= reach_m - 0.05
                 self._voids[self._cells(place - ways[void] * level * _MOUNT_M / rise)] = True
 
+    def blocked(self, places: Array) -> NDArray[np.bool_]:
+        """Whether something is in the way at places, shape (n, 2) m."""
+        rows, columns = self._cells(places)
+        if not len(self._hits):
+            return np.zeros(len(places), np.bool_)
+        found: NDArray[np.bool_] = np.any(self._hits[:, rows, columns], axis=0)
+        found = np.logical_or(found, self._voids[rows, columns])
+        return found
+
     def bumped(self, place: Array, way: Array, step: int) -> None:
         """Something was in the way, in the direction ``way``, that no scan told."""
         ahead = place + 0.3 * way
@@ -84,9 +95,22 @@ class FloorChart:
         cells = np.clip(np.rint(places / _CELL_M).astype(np.int64) + _HALF, 0, 2 * _HALF)
         return cells[..., 0], cells[..., 1]
 
-    def way(self, place: Array, goal: Array, step: int) -> Array | None:
-        """The first piece of the shortest way towards a goal, m ahead and left; ``None``: none."""
+    def way(self, place: Array, goal: Array, step: int, *, length: float = 0.02) -> Array | None:
+        """The first piece of the shortest way towards a goal, m ahead and left; ``None``: none.
+
+        Args:
+            place: Where it begins, m.
+            goal: Where it should lead; if it is somebody's place, who stands there is in no way.
+            step: The present step, to forget bumps.
+            length: How many m it may end further from the goal, for each m that it is shorter.
+        """
         blocked: NDArray[np.bool_] = np.any(self._hits, axis=0) | self._voids
+        (row,), (column,) = self._cells(goal[None])
+        reach = round(_BODY_M / _CELL_M)
+        there = np.s_[
+            max(row - reach, 0) : row + reach + 1, max(column - reach, 0) : column + reach + 1
+        ]
+        blocked[there] = False
         for row, column, when in self._bumps:
             if step - when < _BUMP_STEPS:
                 blocked[row, column] = True
@@ -102,7 +126,7 @@ class FloorChart:
         cells = np.argwhere(steps >= 0)
         corner = np.array([top - _HALF, left - _HALF])
         places = (cells + corner) * _CELL_M
-        cost = np.hypot(*(places - goal).T) + 0.02 * _CELL_M * steps[cells[:, 0], cells[:, 1]]
+        cost = np.hypot(*(places - goal).T) + length * _CELL_M * steps[cells[:, 0], cells[:, 1]]
         row, column = (int(value) for value in cells[int(cost.argmin())])
         path = [(row, column)]
         while steps[row, column] > 0:

@@ -29,6 +29,8 @@ except ImportError as error:
 from dwell.envs.parallel import DwellParallelEnv
 from dwell.envs.parallel_recorder import ParallelReplayRecorder
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
+from dwell.envs.parallel_vector_recorder import ParallelVectorReplayRecorder
+from dwell.envs.supersuit_compatible import SuperSuitCompatible
 from dwell.envs.torchrl_compatible import TorchRLCompatible
 
 if TYPE_CHECKING:
@@ -38,6 +40,8 @@ __all__ = [
     "DwellParallelEnv",
     "DwellParallelVectorEnv",
     "ParallelReplayRecorder",
+    "ParallelVectorReplayRecorder",
+    "SuperSuitCompatible",
     "TorchRLCompatible",
     "env",
     "parallel_env",

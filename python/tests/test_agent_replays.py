@@ -102,6 +102,64 @@ def test_every_form_of_actions_is_held(mode: str, tmp_path: Path) -> None:
     assert replay.first_difference() is None
 
 
+def test_environments_that_step_together_are_recorded(tmp_path: Path) -> None:
+    """Each as alone, where an agent's ends before the others', and after the next have begun."""
+    settings: dict[str, Any] = {**SETTINGS, "max_cycles": 5}
+    envs = zoo.ParallelVectorReplayRecorder(zoo.vector_env(2, "Free", **settings), tmp_path / "two")
+    envs.reset(seed=[3, 4])
+    tokens = np.zeros((2, 8), np.int64)
+    tokens[0, 0] = 1
+    for step in range(8):
+        # Ben's velocities of nearly nothing are his stop: in environment 0 in the third step.
+        ben = np.tile(np.array([0.9, 0.1, 0.0, 0.0], np.float32), (2, 1))
+        ben[0] *= step != 2
+        said = {"tokens": tokens * (step == 1)}
+        envs.step({"anna": {"action": np.array([1, 2]), "say": said}, "ben": ben})
+    hashes = envs.state_hashes()
+    envs.close()
+    replays = [dwell.Replay.read(file) for file in sorted((tmp_path / "two").iterdir())]
+    # Five steps, one that begins the next, and two of that.
+    assert [len(replay.actions) for replay in replays] == [5, 5, 2, 2]
+    assert [replay.differences() for replay in replays] == [[]] * 4
+    assert [int(replay.hashes[-1], 16) for replay in replays[2:]] == hashes
+    assert [one.ended for one in replays[0].agents] == [None, 3, None]
+    assert [set(row) for row in replays[0].actions] == [{"anna", "ben"}] * 3 + [{"anna"}] * 2
+    assert replays[0].actions[1]["anna"]["say"]["tokens"]
+    alone = zoo.ParallelReplayRecorder(zoo.parallel_env("Free", **SETTINGS), tmp_path / "one")
+    alone.reset(seed=3)
+    no_word = {"tokens": np.zeros(8, np.int64)}
+    alone.step(
+        {
+            "anna": {"action": 1, "say": no_word},
+            "ben": np.array([0.9, 0.1, 0.0, 0.0], np.float32),
+        }
+    )
+    alone.close()
+    replay = dwell.Replay.read(tmp_path / "one" / "episode_0000.replay")
+    assert (replay.seed, replay.house) == (replays[0].seed, replays[0].house)
+    assert replay.hashes == replays[0].hashes[:2]
+
+
+def test_a_world_that_steps_with_others_and_changed_is_not_recorded_further(tmp_path: Path) -> None:
+    bare = zoo.vector_env(2, agents=2, houses="builtin:studio", sensors=["gps"])
+    envs = zoo.ParallelVectorReplayRecorder(bare, tmp_path)
+    walk = dict.fromkeys(bare.possible_agents, np.array([1, 1]))
+    envs.reset(seed=1)
+    saved = envs.snapshot()
+    envs.step(walk)
+    envs.restore([None, saved[1]])
+    with pytest.raises(dwell.UsageError, match="the world of environment 1 was changed"):
+        envs.step(walk)
+    envs.step(walk)
+    envs.close()
+    (file,) = tmp_path.iterdir()
+    replay = dwell.Replay.read(file)
+    assert len(replay.actions) == 2
+    assert replay.differences() == []
+    with pytest.raises(dwell.ConfigError, match=r"expected one of dwell\.pettingzoo\.vector_env"):
+        zoo.ParallelVectorReplayRecorder(zoo.parallel_env(agents=2), tmp_path)
+
+
 def test_agents_that_take_turns_are_recorded_too(tmp_path: Path) -> None:
     own = zoo.parallel_env("Free", agents=2, houses="builtin:studio", sensors=["gps"])
     env = parallel_to_aec(zoo.ParallelReplayRecorder(own, tmp_path))

@@ -93,6 +93,70 @@ def test_torchrl_steps_agents_that_take_turns() -> None:
     assert env.rollout(6).batch_size[0] <= 6
 
 
+def test_agents_of_environments_that_step_together_are_rows() -> None:
+    """Needs no library: what SuperSuit's own form of each environment would give."""
+    moves = ["move_forward", "turn_left", "turn_right", "wait"]
+    settings = {**SETTINGS, "actions": moves, "max_cycles": 3}
+    rows = zoo.SuperSuitCompatible(zoo.vector_env(2, "PointNav", **settings))
+    assert rows.num_envs == 6
+    alone = [zoo.parallel_env("PointNav", **settings) for _ in range(2)]
+    names = alone[0].possible_agents
+    seen, infos = rows.reset(seed=5)
+    theirs = [env.reset(seed=5 + k) for k, env in enumerate(alone)]
+    plan = np.random.default_rng(1).integers(0, len(moves), (4, 6))
+    for step in range(5):
+        for k, (observations, told) in enumerate(theirs):
+            for j, name in enumerate(names):
+                row = 3 * k + j
+                assert np.array_equal(seen["gps"][row], observations[name]["gps"])
+                assert infos[row]["episode_id"] == told[name]["episode_id"]
+        if step == 4:
+            break
+        seen, rewards, terminated, truncated, infos = rows.step(plan[step])
+        for k, env in enumerate(alone):
+            actions = {name: int(plan[step][3 * k + j]) for j, name in enumerate(names)}
+            observations, paid, ended, cut, told = env.step(actions)
+            theirs[k] = (observations, told)
+            part = slice(3 * k, 3 * k + 3)
+            assert np.array_equal(rewards[part], np.float32([*paid.values()]))
+            assert terminated[part].tolist() == [*ended.values()]
+            assert truncated[part].tolist() == [*cut.values()] == [step == 2] * 3
+            if step == 2:
+                last = [infos[row]["terminal_observation"]["gps"] for row in range(6)[part]]
+                assert np.array_equal(last, [observations[name]["gps"] for name in names])
+                theirs[k] = env.reset()
+            else:
+                assert "terminal_observation" not in infos[3 * k]
+    rows.close()
+
+
+def test_rows_of_one_policy_want_agents_alike() -> None:
+    agents: dict[str, Any] = {"a": {}, "b": {"sensors": ["gps"]}}
+    with pytest.raises(dwell.ConfigError, match="the observation space of b is another"):
+        zoo.SuperSuitCompatible(zoo.vector_env(1, **{**SETTINGS, "agents": agents}))
+    with pytest.raises(dwell.ConfigError, match=r"expected one of dwell\.pettingzoo\.vector_env"):
+        zoo.SuperSuitCompatible(zoo.parallel_env(**SETTINGS))
+    rows = zoo.SuperSuitCompatible(zoo.vector_env(1, "PointNav", **SETTINGS))
+    rows.reset(seed=1)
+    with pytest.raises(dwell.UsageError, match="leave stop out of actions"):
+        rows.step(np.array([1, 0, 1]))
+
+
+def test_stable_baselines_learns_from_environments_that_step_together() -> None:
+    reason = "needs SuperSuit and Stable-Baselines3 (pip install supersuit stable-baselines3)"
+    wrapper = pytest.importorskip("supersuit.vector.sb3_vector_wrapper", reason=reason)
+    sb3 = pytest.importorskip("stable_baselines3", reason=reason)
+    moves = ["move_forward", "turn_left", "turn_right", "wait"]
+    own = zoo.vector_env(2, "PointNav", actions=moves, **SETTINGS)
+    many = wrapper.SB3VecEnvWrapper(zoo.SuperSuitCompatible(own))
+    model = sb3.PPO("MultiInputPolicy", many, n_steps=16, batch_size=24, device="cpu")
+    before = [row.detach().clone() for row in model.policy.parameters()]
+    model.learn(96)
+    assert model.num_timesteps == 96
+    after = [*model.policy.parameters()]
+    assert any(not bool((a == b).all()) for a, b in zip(before, after, strict=True))
+
+
 def test_stable_baselines_learns_through_supersuit() -> None:
     """One policy for all agents: what they do changes its weights, and rewards are theirs."""
     reason = "needs SuperSuit and Stable-Baselines3 (pip install supersuit stable-baselines3)"

@@ -133,12 +133,15 @@ class AgentForms:
                     taken[k] = self._forms[k].one(given[self.names[k]])
         return taken
 
-    def many(self, actions: object, acts: NDArray[np.bool_]) -> EngineActions:
+    def many(self, actions: object, acts: NDArray[np.bool_]) -> list[EngineActions]:
         """The actions of several environments, by the agents' names, as the engine takes them.
 
         Args:
             actions: Elements of the batched action spaces, of all agents.
             acts: Whose actions are taken, shape (environment, agent), scripted ones among them.
+
+        Returns:
+            Those of each agent, one for each environment, with the number -1 for none.
 
         Raises:
             ConfigError: They are not those of all agents, or one is none.
@@ -155,7 +158,7 @@ class AgentForms:
             with _of_agent(self.names[k]):
                 own = self._forms[k].many(given[self.names[k]], count)
             taken[k] = own.without(~acts[:, k])
-        return EngineActions.interleaved(taken)
+        return taken
 
     def rewards(self, answer: Mapping[str, Any]) -> NDArray[np.float64]:
         """What each agent is paid, shape (environment, agent)."""

@@ -4,8 +4,9 @@ from __future__ import annotations
 
 import dataclasses
 import os
+from collections.abc import Mapping
 from pathlib import Path
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 from numpy.typing import NDArray
@@ -13,7 +14,9 @@ from pettingzoo.utils import BaseParallelWrapper
 
 from dwell import ConfigError, UsageError, __version__
 from dwell.arguments import file_path
-from dwell.envs.action_modes import EngineActions
+from dwell.envs.agent_forms import AgentForms
+from dwell.envs.agent_settings import AgentRoster
+from dwell.envs.native_batch import NativeBatch
 from dwell.envs.parallel import DwellParallelEnv
 from dwell.envs.recorder import EPISODE_IS_FULL, refuse_what_files_cannot_name, write_numbered
 from dwell.files import make_folder
@@ -65,7 +68,7 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         refuse_what_files_cannot_name(own)
         self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
-        self._running: _EpisodeOfAgents | None = None
+        self._running: EpisodeOfAgents | None = None
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
@@ -73,7 +76,9 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         """Begins an episode; the one before is written."""
         self._write()
         observations, infos = self.env.reset(seed=seed, options=options)
-        self._running = _EpisodeOfAgents(self._env, infos)
+        about = next(iter(infos.values()))
+        ids = (str(about["scene_id"]), str(about["episode_id"]))
+        self._running = EpisodeOfAgents(self._env, 0, *ids)
         return observations, infos
 
     def step(self, actions: dict[str, Any]) -> Step:
@@ -88,7 +93,7 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         if running is not None and live:
             # Not written where it is refused.
             self._running = None
-            running.check(self._env.state_hash())
+            running.check(self._env.state_hash(), "the world")
             self._running = running
             if running.is_full:
                 self._write()
@@ -96,7 +101,8 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         answer: Step = self.env.step(actions)
         if running is not None and live:
             taken = self._env._forms.one(actions, live)
-            running.stepped(taken, self._env.state_hash(), self._env._ruling)
+            acted = {k: own.row(0) for k, own in enumerate(taken) if own.numbers[0] >= 0}
+            running.stepped(acted, self._env.state_hash(), self._env._ruling)
             if not self._env.agents:
                 self._write()
         return answer
@@ -112,19 +118,37 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         self._running = None
 
 
-class _EpisodeOfAgents:
+class InNamedRoles(Protocol):
+    """Environments whose agents have names, teams and forms of actions."""
+
+    _config: str
+    _forms: AgentForms
+    _roster: AgentRoster
+
+    @property
+    def _runner(self) -> NativeBatch: ...
+
+
+class EpisodeOfAgents:
     """An episode of several agents that is being recorded."""
 
-    def __init__(self, env: DwellParallelEnv, infos: ByAgent) -> None:
+    def __init__(self, env: InNamedRoles, number: int, scene: str, episode_id: str) -> None:
+        """An episode has begun.
+
+        Args:
+            env: Where.
+            number: In which of its environments.
+            scene: The HOUSE string.
+            episode_id: As of infos.
+        """
         roster, batch = env._roster, env._runner.batch
-        about = next(iter(infos.values()))
         self._agents = [
-            ReplayAgent(name, team, batch.instruction(0, k), success=False, ended=None)
+            ReplayAgent(name, team, batch.instruction(number, k), success=False, ended=None)
             for k, (name, team) in enumerate(zip(roster.names, roster.team_names, strict=True))
         ]
         self._replay = Replay(
-            house=str(about["scene_id"]),
-            seed=seed_of(str(about["episode_id"])),
+            house=scene,
+            seed=seed_of(episode_id),
             config=env._config,
             parts=(),
             actions=(),
@@ -135,36 +159,36 @@ class _EpisodeOfAgents:
             shared_reward=env._forms.share,
         )
         self._actions: list[dict[str, Any]] = []
-        self._hashes = [f"{env.state_hash():016x}"]
+        self._hashes = [f"{batch.state_hash(number):016x}"]
 
-    def check(self, state_hash: int) -> None:
-        """Refuses a world that is not as the last step left it.
+    def check(self, state_hash: int, what: str) -> None:
+        """Refuses a world that is not as the last step left it; ``what``: its owner.
 
         Raises:
             UsageError: No file can hold how it came there.
         """
         if f"{state_hash:016x}" != self._hashes[-1]:
             raise UsageError(
-                "the world was changed since the last step by something else than actions (also by "
+                f"{what} was changed since the last step by something else than actions (also by "
                 "listen, which opens ears: name the sensor audio instead); its episode cannot be "
                 "recorded further; reset begins another"
             )
 
     def stepped(
         self,
-        actions: list[EngineActions],
+        actions: Mapping[int, str | dict[str, Any]],
         state_hash: int,
         ruling: tuple[NDArray[np.bool_], NDArray[np.bool_]],
     ) -> None:
-        """A step was made; ``ruling``: whose success and whose end it was, by place."""
+        """A step was made.
+
+        Args:
+            actions: Of those who acted, by place, as files hold them.
+            state_hash: After it.
+            ruling: Whose success and whose end it was, by place.
+        """
         success, terminated = ruling
-        self._actions.append(
-            {
-                agent.name: own.row(0)
-                for agent, own in zip(self._agents, actions, strict=True)
-                if own.numbers[0] >= 0
-            }
-        )
+        self._actions.append({self._agents[k].name: row for k, row in actions.items()})
         self._hashes.append(f"{state_hash:016x}")
         for k, agent in enumerate(self._agents):
             if agent.ended is None:

@@ -15,6 +15,7 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
 from dwell.arguments import boolean, integer_in_range, kept, quoted, refuse_unknown
+from dwell.envs.action_modes import EngineActions
 from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import OF_TASKS, Agents, MultiAgentSetup
 from dwell.envs.agent_snapshots import agent_parts, parts_of_agents
@@ -29,6 +30,7 @@ from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import NativeSensors
 from dwell.envs.snapshots import EnvSnapshot
+from dwell.envs.step_recorder import AgentRecorder
 from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
 from dwell.world_settings import Laws, Randomize
@@ -134,6 +136,7 @@ class DwellParallelVectorEnv(EzPickle):
         self._limit, roster = setup.limit, setup.roster
         names = [roster.names[k] for k in roster.players]
         self._players, everybody = roster.players, len(roster.names)
+        self._roster, self._config, self._heads = roster, setup.config, setup.heads
         self._shelf = shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         with setup.built(shelf[0]):
@@ -166,6 +169,8 @@ class DwellParallelVectorEnv(EzPickle):
         self._stopped = np.ones(count, np.bool_)
         self._call: str | None = None
         self._closed = False
+        #: Who writes down what is played.
+        self._recorders: list[AgentRecorder] = []
 
     @contextlib.contextmanager
     def _calling(self, call: str) -> Iterator[None]:
@@ -216,6 +221,12 @@ class DwellParallelVectorEnv(EzPickle):
         self._active[which], self._over[which], self._stopped[which] = True, False, False
         self._distances[which] = np.nan
         self._places.look_ahead(following)
+        for recorder in self._recorders:
+            recorder.began([*episodes])
+
+    def _ids(self, env: int) -> tuple[str, str]:
+        """HOUSE string and ``episode_id`` of an environment's episodes."""
+        return self._places.name(env), self._places.episode_id(env, self._seeds[env])
 
     def reset(
         self,
@@ -274,8 +285,10 @@ class DwellParallelVectorEnv(EzPickle):
             taken = self._forms.many(actions, acts)
             if begins.any():
                 self._start(begins)
+            for recorder in self._recorders:
+                recorder.check()
             self._stopped[~begins] = True
-            answer, _ = self._runner.step(taken)
+            answer, _ = self._runner.step(EngineActions.interleaved(taken))
             self._stopped[~begins] = False
             shape = acts.shape
             rewards = np.where(acts, self._forms.rewards(answer), 0.0)
@@ -288,6 +301,8 @@ class DwellParallelVectorEnv(EzPickle):
             self._distances[acts] = distances[acts]
             self._active &= ~(terminated | truncated)
             self._over = np.logical_not(self._active[:, self._players].any(axis=1))
+            for recorder in self._recorders:
+                recorder.stepped(taken, answer, self._over)
             self._runner.observe(np.ones(self.num_envs, np.bool_))
             infos = self._infos()
             count, by_agent = (
@@ -323,8 +338,7 @@ class DwellParallelVectorEnv(EzPickle):
         scenes, episodes = (np.full(self.num_envs, None, object) for _ in range(2))
         for k, stopped in enumerate(self._stopped.tolist()):
             if not stopped:
-                scenes[k] = self._places.name(k)
-                episodes[k] = self._places.episode_id(k, self._seeds[k])
+                scenes[k], episodes[k] = self._ids(k)
         masks = self._forms.masks(self._runner)
         infos: ByAgent = {}
         for k, name in zip(self._players, self.possible_agents, strict=True):
