@@ -332,10 +332,11 @@ mod tests {
     /// A joint of the engine at 240 steps a second meets the closed form of a damped oscillator's step.
     #[test]
     fn a_step_is_that_of_a_damped_oscillator() {
-        let (inertia, stiffness, asked, step_s) = (0.002, 3.0, 0.3, 1.0 / 240.0);
-        let frequency = (stiffness / inertia as f64).sqrt();
-        for ratio in [0.5, 0.9] {
-            let damping = 2.0 * ratio * (inertia * stiffness as f64).sqrt();
+        let (inertia, stiffness): (f64, f64) = (0.002, 3.0);
+        let (asked, step_s) = (0.3, 1.0 / 240.0);
+        let frequency = (stiffness / inertia).sqrt();
+        for ratio in [0.5_f64, 0.9] {
+            let damping = 2.0 * ratio * (inertia * stiffness).sqrt();
             let [k, d] = gains_of_steps(inertia, [stiffness, damping], step_s);
             let servo = Servo {
                 stiffness: k as f32,
@@ -359,7 +360,7 @@ mod tests {
                 let velocity = stage.state.joint_velocity[JointId(0)];
                 track.push((f64::from(position), f64::from(velocity)));
             }
-            let damped = frequency * (1.0 - ratio * ratio as f64).sqrt();
+            let damped = frequency * (1.0 - ratio * ratio).sqrt();
             for k in 1..40 {
                 let t = 0.01 * f64::from(k);
                 let swing =
