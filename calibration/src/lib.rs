@@ -34,6 +34,7 @@ pub use report::{
 };
 pub use select::{
     ChannelResidual, HeldOutGain, LearnableResidual, RegimeAgreement, ResidualNoiseTest,
+    SlowResidual,
 };
 
 use bundle::file::BundleKind;

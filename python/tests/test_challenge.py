@@ -14,7 +14,17 @@ import numpy as np
 import pytest
 
 import dwell
-from dwell.challenge import Case, ChallengeSettings, calibrated_verdict, case, make, run, score
+from dwell.challenge import (
+    Case,
+    ChallengeSettings,
+    calibrated_verdict,
+    case,
+    least_squares,
+    make,
+    one_at_a_time,
+    run,
+    score,
+)
 from dwell.challenge.cases import STRATA, WORLDS, _kind_of
 from dwell.challenge.detection import Detector
 from dwell.challenge.noise import Noise
@@ -252,7 +262,8 @@ def test_who_knows_has_full_scores_and_who_guesses_has_not() -> None:
     assert (found["false_alarms"]["hits"], found["false_alarms"]["of"]) == (0, 2)
     assert found["wrong_names_of_faults"]["hits"] == 0
     of = {"top_1_from_10": 1, "top_1_5_to_10": 1, "set": 3, "inseparable": 1, "both_of_two": 1}
-    for name, count in {**of, "outside_unnamed": 1}.items():
+    beyond = {"outside_unnamed": 1, "outside_apart_unnamed": 1, "outside_seen": 1}
+    for name, count in {**of, **beyond}.items():
         assert (found[name]["hits"], found[name]["of"]) == (count, count), name
     assert found["coverage"]["share"] == 1.0
     assert found["median_error"] == 0.0
@@ -265,6 +276,25 @@ def test_who_knows_has_full_scores_and_who_guesses_has_not() -> None:
     assert (found["set"]["hits"], found["set"]["of"]) == (1, 3)
     assert (found["coverage"]["hits"], found["coverage"]["of"]) == (0, 2)
     assert found["median_error"] == pytest.approx(0.2)
+
+
+def test_baselines_name_what_is_strong_and_nothing_where_nothing_is(tmp_path: Path) -> None:
+    from dwell.challenge.writing import _write
+
+    known = throws(11)
+    noise = Noise("gaussian", 0.002, correlation=0.0, step=0.0, lost=0.02, gross=0.0)
+    plain = dataclasses.replace(
+        first_of("nothing"), world="flights", known=known, noise=noise, noise_is_known=True
+    )
+    for name, hidden in {"drag": {"drag": (0.5,)}, "nothing": {}}.items():
+        folder = tmp_path / f"{name}.measured"
+        folder.mkdir()
+        _write(folder, dataclasses.replace(plain, values=hidden), seed=1)
+    for method in (least_squares, one_at_a_time):
+        assert method(tmp_path / "nothing.measured")["kind"] == "nothing"
+        found = method(tmp_path / "drag.measured")
+        assert "drag" in found["sets"][0]
+        assert found["parameters"]["drag"]["c_d"][0] == pytest.approx(0.5, rel=0.1)
 
 
 def test_intervals_are_those_of_wilson() -> None:

@@ -48,6 +48,9 @@ impl Default for FaultValues {
     }
 }
 
+/// Scales of lengths and clocks that somebody may have set: a wand of another length, a frame rate of another standard.
+const PLAUSIBLE_SCALES: [f64; 2] = [0.9, 1.1];
+
 /// Samples of the true value that a smoothed one is the mean of.
 const SMOOTHING_TAPS: usize = 7;
 
@@ -139,7 +142,7 @@ impl MeasurementFault {
                     "written = scale times true, in all positions",
                     "measure a known length with the tracker, or time a pendulum of known length",
                 ],
-                &[("scale", "1", 1.0, [0.5, 2.0], [0.97, 1.03], 1.01)],
+                &[("scale", "1", 1.0, [0.5, 2.0], PLAUSIBLE_SCALES, 1.01)],
             ),
             Self::ClockScale => cause(
                 self,
@@ -149,7 +152,7 @@ impl MeasurementFault {
                     "written time = scale times true time",
                     "record a known clock for ten minutes with the tracker",
                 ],
-                &[("scale", "1", 1.0, [0.5, 2.0], [0.97, 1.03], 1.01)],
+                &[("scale", "1", 1.0, [0.5, 2.0], PLAUSIBLE_SCALES, 1.01)],
             ),
             Self::FrameTilt => cause(
                 self,
@@ -211,6 +214,18 @@ impl MeasurementFault {
 #[cfg(test)]
 mod tests {
     use super::*;
+
+    /// A scale of lengths and the clock's rate whose square is its inverse bring the same flights: both must be plausible
+    /// where one is.
+    #[test]
+    fn scales_that_flights_do_not_tell_apart_are_plausible_together() {
+        let [length, clock] = [MeasurementFault::LengthScale, MeasurementFault::ClockScale]
+            .map(|fault| fault.cause().parameters[0].plausible);
+        for scale in [0.93_f64, 0.965, 1.035, 1.07] {
+            assert!((length[0]..=length[1]).contains(&scale));
+            assert!((clock[0]..=clock[1]).contains(&(1.0 / scale.sqrt())));
+        }
+    }
 
     #[test]
     fn faults_change_what_is_written_as_they_say() {

@@ -9,6 +9,7 @@ mod quantum;
 mod reasons;
 mod residual;
 mod screen;
+mod spectrum;
 mod split;
 mod verdict;
 
@@ -16,6 +17,7 @@ pub use agreement::RegimeAgreement;
 pub use gain::HeldOutGain;
 pub use learnable::LearnableResidual;
 pub use residual::{ChannelResidual, ResidualNoiseTest};
+pub use spectrum::SlowResidual;
 
 pub(crate) use compare::{Estimate, ScoredModel, estimates, parameter_sd};
 pub(crate) use residual::channel_residuals;

@@ -2,6 +2,7 @@
 
 use super::learnable::LearnableResidual;
 use super::quantum::rounding_sd;
+use super::spectrum::SlowResidual;
 use crate::experiment::{Experiment, ResidualStructure};
 use crate::fit::median;
 use serde::Serialize;
@@ -278,6 +279,8 @@ pub(super) fn effective_count(
 pub struct ResidualNoiseTest {
     /// What can be learned of it; `null` where that is not tried: responses of rooms, or too few episodes.
     pub learnable: Option<LearnableResidual>,
+    /// What varies slowly within episodes; `null` for responses of rooms.
+    pub slow: Option<SlowResidual>,
     /// Mean square of the residuals over that of their noise: 1 for noise alone.
     pub ratio: f64,
     /// The ratio above which noise alone is no explanation.
@@ -287,7 +290,9 @@ pub struct ResidualNoiseTest {
 impl ResidualNoiseTest {
     /// Returns whether something systematic is left.
     pub(crate) fn is_structured(&self) -> bool {
-        self.ratio > self.threshold || self.learnable.is_some_and(|found| found.is_structured())
+        self.ratio > self.threshold
+            || self.learnable.is_some_and(|found| found.is_structured())
+            || self.slow.is_some_and(|found| found.is_structured())
     }
 
     pub(crate) fn of(experiment: &dyn Experiment, set: &[usize], residuals: &[Vec<f64>]) -> Self {
@@ -321,6 +326,7 @@ impl ResidualNoiseTest {
         let n = count.max(1) as f64;
         Self {
             learnable: None,
+            slow: None,
             ratio: if count > 0 { sum / n } else { 1.0 },
             // The floor's own error by the median of autocorrelated differences is about 2.5/sqrt(n).
             threshold: 1.25 + 12.0 / n.sqrt(),
@@ -352,6 +358,7 @@ impl ResidualNoiseTest {
         let within = within / f64::max(freedom, 1.0);
         Self {
             learnable: None,
+            slow: None,
             ratio: if within > 0.0 {
                 common / count / within
             } else {

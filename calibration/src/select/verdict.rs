@@ -13,6 +13,7 @@ use super::reasons::{
 };
 use super::residual::{ResidualNoiseTest, noise_from_differences};
 use super::screen::{LinearGain, LinearScreening};
+use super::spectrum::slow_residual;
 use super::split::EpisodeSplit;
 use crate::error::CalibrationError;
 use crate::experiment::{Experiment, ParameterVector, ResidualStructure};
@@ -195,6 +196,7 @@ impl Search<'_> {
                 Some(own) if own.ratio * found.threshold > found.ratio * own.threshold => {
                     ResidualNoiseTest {
                         learnable: None,
+                        slow: None,
                         ratio: own.ratio,
                         threshold: own.threshold,
                     }
@@ -209,7 +211,23 @@ impl Search<'_> {
             all.threads,
             RandomKey::root(all.options.seed).child("learner"),
         )?;
-        Ok(ResidualNoiseTest { learnable, ..found })
+        let fits = [
+            (&split.train[..], &scored.fit),
+            (&split.held_out[..], &scored.held_out),
+        ];
+        let slow = slow_residual(all.experiment, &fits, all.threads)?;
+        // An autoregression describes what is left: its neighbours do not tell how large it is.
+        let ratio = if slow.is_noise() {
+            found.ratio.min(1.0)
+        } else {
+            found.ratio
+        };
+        Ok(ResidualNoiseTest {
+            learnable,
+            slow: Some(slow),
+            ratio,
+            ..found
+        })
     }
 
     /// The causes that are worth a full fit beside a model, the most promising first, with what each gains to first order,

@@ -5,6 +5,7 @@ no trace of its cause: what is known of the situation is drawn before the cause,
 are random.
 """
 
+from dwell.challenge.baselines import least_squares, one_at_a_time
 from dwell.challenge.cases import Case, ChallengeSettings, case
 from dwell.challenge.rows import read_answers, read_verdicts
 from dwell.challenge.running import calibrated_verdict, run
@@ -16,7 +17,9 @@ __all__ = [
     "ChallengeSettings",
     "calibrated_verdict",
     "case",
+    "least_squares",
     "make",
+    "one_at_a_time",
     "read_answers",
     "read_verdicts",
     "run",

@@ -64,7 +64,9 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         ``inseparable``: cases of one with a rival within a d' of 1, at 10 and more: several are
         given, the truth among them. ``both_of_two``: two effects at 10 and more each that no single
         one imitates, both named and no other. ``single_name_of_two``: of those one name alone.
-        ``outside_unnamed``: no name for what is outside the library, at 10 and more. ``coverage``:
+        ``outside_unnamed``: no name for what is outside the library, at 10 and more;
+        ``outside_apart_unnamed``: of those that no single effect of the library imitates;
+        ``outside_seen``: of all at 10 and more those with any verdict but "nothing". ``coverage``:
         95 % intervals of named right ones that hold the truth; ``median_error`` of their values.
         ``curve``: cases of one effect or fault named right, by d', but for those with a rival that
         is much nearer to the truth than nothing is. ``judged``: number of cases.
@@ -76,7 +78,8 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
     by_kind: dict[str, list[tuple[_Row, _Row]]] = {}
     for answer, verdict in pairs:
         by_kind.setdefault(answer["kind"], []).append((answer, verdict))
-    nothing, outside = by_kind.get("nothing", []), by_kind.get("outside", [])
+    nothing = by_kind.get("nothing", [])
+    beyond = [row for row in by_kind.get("outside", []) if _d_prime(row[0]) >= 10.0]
     single = by_kind.get("one", []) + by_kind.get("fault", [])
     strong = [row for row in single if _d_prime(row[0]) >= 10.0]
     two = [
@@ -106,9 +109,11 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         "single_name_of_two": _share(
             len(verdict["sets"]) == 1 and len(verdict["sets"][0]) == 1 for _, verdict in two
         ),
-        "outside_unnamed": _share(
-            not _names(verdict) for answer, verdict in outside if _d_prime(answer) >= 10.0
+        "outside_unnamed": _share(not _names(verdict) for _, verdict in beyond),
+        "outside_apart_unnamed": _share(
+            not _names(verdict) for answer, verdict in beyond if _is_separable(answer)
         ),
+        "outside_seen": _share(verdict["kind"] != "nothing" for _, verdict in beyond),
         "coverage": _share(check["covers"] for check in checks),
         "median_error": float(np.median([check["error"] for check in checks])) if checks else None,
         "curve": _curve(single),

@@ -29,6 +29,12 @@ def configure(parser: argparse.ArgumentParser) -> None:
     run.add_argument("bundles", type=path, metavar="DIR", help="the folder of bundles")
     run.add_argument("--shard", type=shard, default=(0, 1), metavar="I/N", help="a part of them")
     run.add_argument(
+        "--method",
+        choices=("calibrate", "least-squares", "one-at-a-time"),
+        default="calibrate",
+        help="dwell calibrate (default), or a baseline that knows the worlds' equations",
+    )
+    run.add_argument(
         "--out", type=path, required=True, metavar="FILE.jsonl", help="verdicts; of each shard one"
     )
     run.set_defaults(do=_run)
@@ -67,14 +73,17 @@ def _make(args: argparse.Namespace) -> int:
 
 
 def _run(args: argparse.Namespace) -> int:
+    from dwell.challenge import calibrated_verdict
     from dwell.challenge import run as judge
+    from dwell.challenge.baselines import BASELINES
 
     names = len(list(args.bundles.glob("*.measured")))
     which, shards = args.shard
     expected = max(1, len(range(which, names, shards)))
     progress = ProgressBar()
     done = new = 0
-    for name, is_new in judge(args.bundles, args.out, shard=args.shard):
+    method = BASELINES.get(args.method, calibrated_verdict)
+    for name, is_new in judge(args.bundles, args.out, method, args.shard):
         done, new = done + 1, new + is_new
         progress(done / expected, name)
     print(f"{new} of {done} bundles judged; verdicts in {args.out}")

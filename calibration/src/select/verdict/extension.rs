@@ -12,8 +12,8 @@ const SECOND_SHARE: f64 = 0.15;
 impl Search<'_> {
     /// Adds effects as long as something systematic is left, and leaves out those that are not needed any more.
     ///
-    /// Cells hide a second effect from the test of what is left: there an effect is added, too, that takes a fair part of what
-    /// is left.
+    /// The test of what is left knows no effect, and a weak one hides from it: over time an effect is added, too, that gains more
+    /// than chance gives the best of the library, and in cells one that takes a fair part of what is left.
     pub(super) fn extend(
         &self,
         first: ScoredModel,
@@ -23,15 +23,12 @@ impl Search<'_> {
         let mut now = first;
         while now.model.causes.len() < MOST_EFFECTS && !self.all.progress.deadline().is_over() {
             let is_structured = self.remainder(&now)?.is_structured();
-            if !is_structured && !by_cell {
-                break;
-            }
-            let least = if is_structured {
-                0.0
-            } else {
-                SECOND_SHARE * now.fit.loss
-            };
             let (gains, short, by_chance) = self.shortlist(&now)?;
+            let least = match (is_structured, by_cell) {
+                (true, _) => 0.0,
+                (false, true) => SECOND_SHARE * now.fit.loss,
+                (false, false) => by_chance,
+            };
             let most = gains.iter().map(|gain| gain.gain).fold(0.0, f64::max);
             if most < least {
                 break;

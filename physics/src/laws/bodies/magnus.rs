@@ -21,7 +21,8 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                    A the cross-section (m2), r = sqrt(A / pi) (m); A = 0 takes a quarter of the surface of the collision \
                    pieces",
         source: "R. Cross, C. Lindsey, Measurements of drag and lift on tennis balls in flight, Sports Engineering 17, 89 \
-                 (2014): lift in proportion to the spin parameter r w / v",
+                 (2014): lift in proportion to the spin parameter r w / v; c_l = 2 in slow flow: S. I. Rubinow, J. B. Keller, \
+                 J. Fluid Mech. 11, 447 (1961)",
         engine: ActsIn::Physics,
         acts_on: "object",
         params: &[
@@ -31,7 +32,7 @@ pub(in crate::laws) const LAW: PhysicsLaw = PhysicsLaw {
                 default: 0.0,
                 low: -10.0,
                 high: 10.0,
-                plausible: [0.3, 1.5],
+                plausible: [0.0, 2.0],
             },
             AREA,
             AIR_DENSITY,
