@@ -90,7 +90,7 @@ fn old_and_new_files_hold_the_same() {
 
 /// Every bit of every byte that is not 0, and of every seventh that is.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_flipped_bit_ends_in_an_answer_or_an_error() {
     let _alone = ALONE.lock().unwrap_or_else(PoisonError::into_inner);
     let mut refused = 0;

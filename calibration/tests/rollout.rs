@@ -183,7 +183,7 @@ fn roll_outs_meet_their_own_tosses_and_threads_change_nothing() {
 /// points a generation narrow a range of 1 to 12 to that in 16 generations), for any number of threads; a peer that is
 /// the nominal engine itself loses against it on most tosses.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn hidden_friction_is_found_out_of_fold() {
     let mut tracks = tossed(0.25, 12);
     tracks.board.friction = 0.4;

@@ -139,7 +139,7 @@ fn verdict(hidden: &Hidden, seed: u64) -> CalibrationVerdict {
 
 /// A gust has another phase in each throw: no learner knows it from others, and it is not nothing.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_gust_is_no_nothing_and_has_no_name() {
     let hidden = Hidden {
         gust_m_s2: 0.8,
@@ -153,7 +153,7 @@ fn a_gust_is_no_nothing_and_has_no_name() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn noise_with_a_memory_is_nothing() {
     for (seed, memory) in [(7102, 0.75), (7103, 0.88)] {
         let hidden = Hidden {
@@ -166,7 +166,7 @@ fn noise_with_a_memory_is_nothing() {
 
 /// Flights show g s / tau^2: a length that is off by 3.5 % may as well be a clock.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_wrong_length_may_be_a_clock() {
     let hidden = Hidden {
         length_scale: Some(0.965),
@@ -183,7 +183,7 @@ fn a_wrong_length_may_be_a_clock() {
 
 /// What is left beside a strong effect is near to noise, and yet a weak one is in it.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_weak_effect_is_named_beside_a_strong_one() {
     let hidden = Hidden {
         viscous_per_s: 0.3,

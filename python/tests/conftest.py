@@ -19,18 +19,17 @@ from dwell import cli
 
 Open = Callable[[str, int | None], dwell.House]
 
-SHARES = 4
-
 
 def pytest_collection_modifyitems(config: pytest.Config, items: list[pytest.Item]) -> None:
-    """Leaves out the tests marked ``long`` of other shares than ``DWELL_TEST_SHARE``, 1 to 4."""
+    """Leaves out the tests marked ``long`` of shares other than ``DWELL_TEST_SHARE`` ("3/8")."""
     share = os.environ.get("DWELL_TEST_SHARE")
     if share is None or os.environ.get("DWELL_TEST_ALL"):
         return
+    number, shares = map(int, share.split("/"))
 
     def is_left_out(item: pytest.Item) -> bool:
-        own = zlib.crc32(item.nodeid.encode()) % SHARES + 1
-        return item.get_closest_marker("long") is not None and own != int(share)
+        own = zlib.crc32(item.nodeid.encode()) % shares + 1
+        return item.get_closest_marker("long") is not None and own != number
 
     config.hook.pytest_deselected(items=[item for item in items if is_left_out(item)])
     items[:] = [item for item in items if not is_left_out(item)]

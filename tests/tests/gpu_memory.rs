@@ -20,7 +20,7 @@ const VIEWS: usize = 48;
 const EDGE: u32 = 24;
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn later_batches_take_little_from_the_heap() {
     let Some(first) = adapters().into_iter().next() else {
         println!("skipped: no graphics adapter, not even of software");

@@ -65,7 +65,7 @@ fn houses() -> Vec<String> {
 
 /// Without images: the state, its rays and sounds, and physics.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_further_world_keeps_little() {
     let _alone = ALONE.lock().unwrap();
     for name in houses() {
@@ -89,7 +89,7 @@ fn a_further_world_keeps_little() {
 
 /// Resets leave nothing behind: 100 in two houses, 10,000 in all with `DWELL_TEST_ALL=1`.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn resets_leave_nothing_behind() {
     let _alone = ALONE.lock().unwrap();
     let (resets, houses) = if dwell_tests::runs_all() {
@@ -125,7 +125,7 @@ fn resets_leave_nothing_behind() {
 /// A listener who walks for an hour past a radio that is carried (a minute and a half without `DWELL_TEST_ALL=1`), in a stream of its
 /// own: what it holds goes up and down with the paths that there are, and does not grow.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn an_hour_of_sound_keeps_memory_flat() {
     const BLOCK: usize = 800;
     let _alone = ALONE.lock().unwrap();

@@ -341,7 +341,7 @@ mod tests {
 
     /// Two microphones of one place are in a diffuse field (Cook 1955), those of two places are uncorrelated. 5 standard errors.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn two_microphones_hear_one_diffuse_field() {
         let n = 5000 * 256;
         let one = heard(&Receiver::omni(Vec3::new(1.0, 1.5, 2.0)), 7, n);

@@ -202,7 +202,7 @@ mod tests {
 
     /// V17: a plane wave at two points on a sphere, after Woodworth; 1 microsecond.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn a_plane_wave_has_woodworths_difference_of_times() {
         for azimuth_deg in [-90.0, -30.0, 0.0, 30.0, 45.0, 60.0, 90.0, 120.0, 150.0] {
             let sin = libm::sin(f64::to_radians(azimuth_deg));
@@ -231,7 +231,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn equal_ears_correlate_wholly_and_independent_ones_hardly() {
         let (left, other) = (noise(1), noise(2));
         let down: Vec<f32> = left.iter().map(|x| -0.3 * x).collect();

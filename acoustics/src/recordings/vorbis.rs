@@ -60,7 +60,7 @@ mod tests {
 
     /// Packets of random contents with valid checksums: a decoder gives sound, or an error.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn packets_of_nonsense_end_nothing() {
         let packets = packets();
         let mut stream = RandomKey::root(11).stream();

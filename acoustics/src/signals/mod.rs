@@ -167,7 +167,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn every_signal_is_finite_and_has_one_pascal_at_any_rate() {
         for signal in list() {
             for rate_hz in [8_000, 16_000, 44_100] {
@@ -225,7 +225,7 @@ mod tests {
 
     /// At the seam of a loop the step is no larger than steps inside it.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn loops_have_no_seam() {
         for signal in list() {
             let opened = Signal::open(signal.name, 16_000).unwrap();

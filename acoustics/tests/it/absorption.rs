@@ -112,7 +112,7 @@ fn particles_t30_s(scattering: f64) -> f64 {
 /// Source: H. Arau-Puchades, Acustica 65, 163 (1988): the geometric mean of Eyring's times of the three pairs of walls, weighted by
 /// their areas. With scattering 0.1 both simulations have 1.6 times that.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn one_soft_side_and_little_scattering_make_long_decays() {
     let (source, ear) = (Vec3::new(2.1, 1.5, 1.7), Vec3::new(7.3, 1.3, 5.2));
     let scatterings = [0.05, 0.1, 0.3, 1.0];
@@ -182,7 +182,7 @@ fn scattering_does_not_absorb() {
 /// V12: source and receiver may change places, here in two rooms of a furnished flat. Paths are the same, and the tails differ by
 /// no more than chance allows: 3 standard errors of both.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn source_and_receiver_may_change_places() {
     let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
     let rays = RayScene::new(house.clone());

@@ -216,7 +216,7 @@ fn a_room_of_mirrors_decays_as_the_sum_over_its_directions() {
 /// From 60 to 400 ms they are as coherent as in a diffuse field, sin(kd)/(kd), within 0.08 (root mean square from 200 to 4000 Hz; 0.06 in
 /// a real laboratory of that size). With one coefficient for all angles it is above that.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_tail_of_a_long_room_is_that_of_a_diffuse_field() {
     let coherence_error = |by_angle: bool| {
         let config = AcousticConfig {

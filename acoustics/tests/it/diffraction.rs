@@ -86,7 +86,7 @@ fn exact_db(source: (f64, f64), receiver: (f64, f64), frequency_hz: f64) -> f64 
 
 /// Over all bands and angles within 3.2 dB of the exact solution, and within 1.8 dB in the mean of squares.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_screen_shadows_as_the_exact_solution_has_it() {
     let hall = screen();
     let (mut squares, mut count) = (0.0, 0);

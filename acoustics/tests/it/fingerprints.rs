@@ -419,7 +419,7 @@ fn hide(id: &str, random: &mut Random) -> LawSpec {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_law_is_found_by_its_fingerprint() {
     let halls = [WINTER_PCT, SUMMER_PCT].map(room);
     // A seed for each law in turn; all of three with all tests.
@@ -439,7 +439,7 @@ fn every_law_is_found_by_its_fingerprint() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nothing_is_found_where_nothing_is_hidden() {
     let hall = room(WINTER_PCT);
     for seed in 0..6 {

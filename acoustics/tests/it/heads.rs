@@ -162,7 +162,7 @@ fn spread(count: usize, seed: u64) -> Vec<Vec3> {
 /// Places between the directions, in scenes of other sample rates: 10 us and 0.5 dB up to nearly 8 kHz. Excluded are
 /// directions opposite to an ear, where the bright spot and its rings are narrower than the grid.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_measured_sphere_is_heard_as_the_sphere() {
     let sphere = Head::spherical(RADIUS_M).unwrap();
     let about = WHOLE.summary().unwrap();
@@ -187,7 +187,7 @@ fn a_measured_sphere_is_heard_as_the_sphere() {
 /// Measured responses are reproduced, notches and peaks included: 0.1 dB and 5 us from 200 Hz on (0.2 dB and 10 us below,
 /// where the bass is not the measurement's).
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn measured_directions_are_heard_as_measured() {
     let sphere = Head::spherical(RADIUS_M).unwrap();
     let directions: Vec<Vec3> = MEASURED
@@ -462,7 +462,7 @@ fn streams_wear_heads() {
 
 /// In the tail of a room the ears are as coherent as on the built-in sphere of that radius: within 0.1 in every octave.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_tail_is_as_coherent_as_at_the_sphere() {
     let hall = room();
     let sphere = Head::spherical(RADIUS_M).unwrap();

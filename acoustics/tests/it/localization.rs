@@ -156,7 +156,7 @@ fn azimuth_deg(channels: &[Vec<f32>]) -> f64 {
 /// (1988)) has it, by Eyring's decay. At 2 m, where the image in a near wall stands 15 degrees beside the source, this array errs
 /// by 2.4 degrees in the mean and 7 at most.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn an_array_hears_where_sources_are_in_a_reverberant_room() {
     const DISTANCE_M: f32 = 1.0;
     let size = [9.7, 2.7, 5.5];

@@ -48,7 +48,7 @@ fn hear(hall: &Hall, source: Vec3, ears: &[Vec3]) -> Vec<Echogram> {
 
 /// V14: through a wall of S m² with reduction index R, L1 - L2 = R + 10 lg(A2 / S) (ISO 16283-1), here 30 dB.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_wall_insulates_by_its_reduction_index() {
     let (one, two) = (Vec3::new(5.0, 2.5, 4.0), Vec3::new(6.0, 2.5, 4.0));
     // 10 m² of absorption in the second room.

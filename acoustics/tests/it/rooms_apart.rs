@@ -105,7 +105,7 @@ fn level_db(echogram: &Echogram, from_s: f64, to_s: f64) -> f64 {
 /// error of 1 dB by chance. With few rays, what is 40 dB below the direct sound follows more slowly: there, a third of what the rooms
 /// differ by may be left.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_late_sound_is_that_of_the_room_one_is_in() {
     let presets = ["rl", "full"].map(|preset| {
         let hall = Hall::new(two_rooms(), AcousticConfig::preset(preset).unwrap());

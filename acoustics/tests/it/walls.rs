@@ -168,7 +168,7 @@ fn a_closed_door_silences_and_an_open_one_does_not() {
 /// While a door swings, a stream reuses much of the tail, and is close to a full trace; when the door has come to rest, it
 /// gives what a stream that begins then does, to the bit.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     let wall = material(0.1, 0.3);
     let mut hall = Hall::new(two_rooms(&wall, &wall), dry(4000));

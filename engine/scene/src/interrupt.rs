@@ -222,7 +222,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn pieces_on_other_threads_stop_too_and_those_of_others_do_not() {
         for threads in [1, 2, 7] {
             let done = AtomicUsize::new(0);

@@ -275,7 +275,7 @@ mod tests {
     /// With friction, damping and a motor on one joint, each gives its own share: at a steady speed the motor's effort is
     /// friction plus damping times the speed.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn friction_acts_with_its_own_bound_beside_a_motor() {
         let (friction, damping) = (0.05, 0.2);
         for torque in [0.3_f64, -0.7] {

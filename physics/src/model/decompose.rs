@@ -136,7 +136,7 @@ mod tests {
     }
 
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn broken_meshes_give_a_piece_or_none() {
         let flat = |positions: Vec<Vec3>, triangles: Vec<[u32; 3]>| Mesh {
             positions,

@@ -6,7 +6,7 @@ use glam::{Quat, Vec3};
 
 /// 500 random things fall into a room: every number stays finite, nothing leaves, and the heap comes to rest.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn five_hundred_random_things_stay_finite_and_inside() {
     let mut build = Build::room([8.0, 12.0, 8.0]);
     let mut random = RandomKey::root(11).stream();

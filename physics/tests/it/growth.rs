@@ -91,7 +91,7 @@ fn what_is_in_a_crowd_is_frozen_and_told() {
 
 /// So many pairs are made in portions, which changes nothing.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_larger_crowd_is_frozen_and_told_alike() {
     let mut build = Build::room([4.0, 3.0, 4.0]);
     let count = 340;

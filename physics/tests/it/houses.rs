@@ -184,7 +184,7 @@ fn walks(mut run: Run) {
 /// One joint after the other: commanded to open, it opens, unless something is in its way, and closes: on a fixed object to
 /// the bit, a lid on a loose one within its tolerance.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nearly_every_door_and_drawer_of_the_apartment_opens_and_shuts() {
     let mut run = apartment();
     run.steps(40);

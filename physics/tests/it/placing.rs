@@ -286,7 +286,7 @@ fn what_rests_on_what_follows_a_stack() {
 
 /// Every small thing of the apartment, put on its dining table one after the other.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_apartments_things_stand_on_its_table() {
     let house = Arc::new(dwell_houses::open("builtin:apartment").unwrap().0);
     let mut run = Run::over(Arc::clone(&house), PhysicsConfig::default());

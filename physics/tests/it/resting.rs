@@ -83,7 +83,7 @@ fn what_fell_asleep_keeps_no_pairs() {
 
 /// Boxes are shrunk while bodies fall asleep one by one; a world restored then goes on alike.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_world_restored_while_things_fall_asleep_continues_bit_for_bit() {
     let mut run = slats();
     fling(&mut run, &mut RandomKey::root(6).stream());

@@ -27,7 +27,7 @@ fn states(text: &GroundedText) -> Vec<(&str, &[Term])> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_was_changed_is_told() {
     let mut counts = [0; 3];
     for name in ["builtin:apartment", "seed:3", "seed:8"] {

@@ -114,7 +114,7 @@ fn examine_house(name: &str) {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn texts_are_true_and_read_back_as_they_were_meant() {
     for name in houses() {
         examine_house(&name);

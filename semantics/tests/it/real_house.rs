@@ -160,7 +160,7 @@ fn predecessor_colors(house: &House, object: ObjectId, list: ColorVocabulary) ->
 /// Fact 19, for the models whose colours this house does not override: basic, web and survey words as the predecessor gave
 /// them. Its way of choosing is repeated here over our meshes, areas and textures; ours is printed beside it.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_predecessors_colour_words_come_out_of_our_surfaces() {
     let Some(house) = sample() else { return };
     let semantics = Semantics::new(&house);

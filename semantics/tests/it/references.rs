@@ -25,7 +25,7 @@ struct Counts {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn each_reference_denotes_its_thing_alone() {
     let mut in_house = Counts::default();
     let mut in_view = Counts::default();

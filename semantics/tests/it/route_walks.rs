@@ -244,7 +244,7 @@ fn check(
 
 /// Ways between the middles of rooms and things of houses are told, and every route is looked at from all sides.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn routes_are_true_of_their_ways_and_of_no_others() {
     let houses = [
         "builtin:apartment",

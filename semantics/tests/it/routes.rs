@@ -69,7 +69,7 @@ fn follow(
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn whoever_follows_the_words_arrives() {
     let (mut told, mut none, mut past) = (0, 0, 0);
     let houses = [

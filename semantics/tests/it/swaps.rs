@@ -269,7 +269,7 @@ fn swap_in(name: &str) -> usize {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn swapped_words_are_found() {
     // Six of them with `DWELL_TEST_ALL=1`.
     let all = std::env::var_os("DWELL_TEST_ALL").is_some();

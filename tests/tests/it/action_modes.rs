@@ -38,7 +38,7 @@ fn env(house: &str, task: &str) -> Env {
 /// A fair share of random play comes near things; there each action that the mask rules out fails when it is tried in a copy, and of
 /// those that it allows most succeed.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_a_mask_rules_out_fails() {
     let (mut ruled_out, mut allowed, mut done) = (0, 0, 0);
     for house in ["builtin:apartment", "seed:900031"] {

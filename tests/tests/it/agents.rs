@@ -330,7 +330,7 @@ fn one_agent_may_end_before_the_other() {
 
 /// A snapshot of two agents, of whom one has ended, goes on bit for bit, in company and on any number of threads.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn episodes_of_two_go_on_from_snapshots_on_any_number_of_threads() {
     let make = || {
         let small = json!({"width": 16, "height": 12});

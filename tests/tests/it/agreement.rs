@@ -197,7 +197,7 @@ fn leave_coincident_out(views: &[Vec<Observation>], others: &mut [Vec<Observatio
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn colours_agree_within_a_bound_of_flip() {
     let seen = ["rgb", "depth", "instance"].map(str::to_owned);
     let paths = adapter_paths();
@@ -288,7 +288,7 @@ fn faulty(stage: &Stage, fault: &Fault) -> Vec<Vec<u8>> {
 
 /// The bounds are no wider than they may be: faults that nobody sees at a glance are beyond them.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn small_faults_are_beyond_the_bounds_of_flip() {
     let stage = stage("seed:3", 10);
     let faults = [
@@ -420,7 +420,7 @@ fn rows_off(
 
 /// Every sensor that the registry has for pictures, so that a new one is compared or refused here.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_other_sensor_agrees_by_its_numbers() {
     let paths = adapter_paths();
     if paths.is_empty() {

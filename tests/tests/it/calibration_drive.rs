@@ -202,7 +202,7 @@ fn late_stamps_are_not_taken_for_slip() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nothing_is_found_where_nothing_is_hidden() {
     for seed in 34..=36 {
         let report = drives(Robot::default(), seed);

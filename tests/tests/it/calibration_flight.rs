@@ -193,7 +193,7 @@ fn named(report: &CalibrationReport, law: &str) -> (f64, [f64; 2]) {
 /// Five seeds; the interval of 95 % may miss once in twenty, so a tolerance of 5 % stands beside it.
 /// Two seeds, one with heavy tails; five with `DWELL_TEST_ALL=1`.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn quadratic_drag_is_named_with_its_coefficient() {
     for seed in 1..=if dwell_tests::runs_all() { 5 } else { 2 } {
         let world = World {
@@ -232,7 +232,7 @@ fn linear_drag_gets_its_own_name() {
 
 /// Flights alone do not tell gravity from scales of lengths and of the clock: g s / tau² is all that they show.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn gravity_and_scales_are_not_told_apart_by_flights() {
     let report = throws(
         World {
@@ -277,7 +277,7 @@ fn gravity_and_scales_are_not_told_apart_by_flights() {
 /// Ten seeds, half of them with heavy tails: no name, and nothing unexplained.
 /// Three seeds, one with heavy tails; ten with `DWELL_TEST_ALL=1`.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nothing_is_found_where_nothing_is_hidden() {
     for seed in 31..=if dwell_tests::runs_all() { 40 } else { 33 } {
         let report = throws(
@@ -299,7 +299,7 @@ fn nothing_is_found_where_nothing_is_hidden() {
 
 /// At one low speed and with much noise, drag by v and by v² are one.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_cannot_be_told_apart_is_said_to_be_so() {
     let world = World {
         c_d: 0.5,
@@ -325,7 +325,7 @@ fn what_cannot_be_told_apart_is_said_to_be_so() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_cause_outside_of_the_library_gets_no_name() {
     for seed in [51, 52] {
         let report = throws(World { fan: 4.0, ..QUIET }, seed);
@@ -355,7 +355,7 @@ fn a_cause_outside_of_the_library_gets_no_name() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_report_is_one_page_and_the_same_for_any_number_of_threads() {
     let folder = tempfile::tempdir().unwrap();
     let hidden = dwell_calibration::example::write(folder.path(), 3).unwrap();
@@ -412,7 +412,7 @@ fn the_caller_can_stop_it() {
 /// Each law of bodies in flight and each fault of a tracker, hidden alone by other code, is named or stands in the set of
 /// those that cannot be told apart.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_law_of_flight_and_every_fault_of_a_tracker_is_found() {
     let spinning = World { c_l: 1.0, ..QUIET };
     let balloon = World {

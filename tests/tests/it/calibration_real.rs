@@ -33,7 +33,7 @@ fn rows(path: &std::path::Path) -> Vec<Vec<String>> {
 /// A physicist accepts: quadratic drag with the coefficient of balls (0.05 past the drag crisis to 1 for a pierced one), that
 /// drag cannot be told from something else, or that one coefficient does not serve all balls. Not: nothing.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn falling_balls_get_a_defensible_verdict() {
     let folder = shared_data().join("measured/physics/ball_drops");
     if !folder.join("data.csv").exists() {

@@ -118,7 +118,7 @@ fn the_surface_with_another_absorption_is_named() {
 
 /// A source that is too soft and, with `DWELL_TEST_ALL=1`, louder ones: no name, and nothing unexplained.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nothing_is_found_where_nothing_is_hidden() {
     let cases = [(11, 0.1), (12, 5.0), (13, 1.0), (14, 1.0)];
     for (seed, gain) in cases
@@ -182,7 +182,7 @@ fn a_slow_recorder_is_not_warmth_where_a_thermometer_was_read() {
 
 /// A wall 12 % further away than described.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_wall_that_stands_further_away_is_named() {
     let cases = [(1_usize, 23), (4, 24)];
     for (side, seed) in cases

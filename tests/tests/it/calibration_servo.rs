@@ -165,7 +165,7 @@ fn runs(joint: Joint, seed: u64) -> CalibrationReport {
 
 /// Clocks 10 ms apart; with `DWELL_TEST_ALL=1` three seeds, 0, 10 and 20 ms apart: the offset is a nuisance and is no effect.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn backlash_is_named_with_its_width() {
     let seeds = if dwell_tests::runs_all() {
         1..=3
@@ -204,7 +204,7 @@ fn backlash_is_named_with_its_width() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn friction_is_not_taken_for_backlash() {
     let report = runs(
         Joint {
@@ -241,7 +241,7 @@ fn friction_is_not_taken_for_backlash() {
 
 /// A seed with a clock offset, and three more with `DWELL_TEST_ALL=1`: no name, and nothing unexplained.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn nothing_is_found_where_nothing_is_hidden() {
     let seeds = if dwell_tests::runs_all() {
         21..=24
@@ -347,7 +347,7 @@ fn hidden(law: &str) -> (Joint, f64) {
 /// Each law of joints, hidden alone, is named, or stands in the set of those that cannot be told apart; one of them, all
 /// with `DWELL_TEST_ALL=1`.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_law_of_a_joint_is_found() {
     let sample = ["latency"];
     let laws = dwell_physics::laws::all().filter(|law| law.acts_on == "joint");

@@ -425,7 +425,7 @@ fn an_agent_carries_several_cameras() {
 /// Noise is the same for any number of threads and any company, other in every step and for every agent's law, and flow and
 /// noise are the same after a restore.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn noise_and_flow_come_back_with_a_snapshot() {
     let laws = || {
         vec![

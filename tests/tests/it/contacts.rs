@@ -77,7 +77,7 @@ fn who_stands_is_silent_and_who_walks_is_heard_step_by_step() {
 
 /// Pushed shut fast, a door slams: louder than one that is closed gently, which is louder than one that stands.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn doors_creak_while_they_move_and_slam_when_they_are_shut_fast() {
     let engines = dwell_tests::apartment();
     let house = engines.house().clone();

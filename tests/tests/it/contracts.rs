@@ -56,7 +56,7 @@ fn observations_and_states_do_not_depend_on_threads_or_company() {
 
 /// An episode is the same whether others were played before it or not.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn episodes_do_not_remember_earlier_ones() {
     let play = |seeds: &[u64]| {
         let mut batch = Batch::new(vec![dwell_tests::env(&all_sensors())], Threads::ONE).unwrap();
@@ -77,7 +77,7 @@ fn episodes_do_not_remember_earlier_ones() {
 /// The expert of every task that asks for something succeeds in all of six fixed seeds, twenty with `DWELL_TEST_ALL=1`, or fewer where
 /// episodes are longer; there in all but one, since things that are moved by hands slip now and then.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_task_can_be_solved_by_its_expert() {
     let alone = |kind: &&tasks::TaskKind| kind.has_goal && kind.min_agents == 1;
     for kind in tasks::all().iter().filter(alone) {
@@ -122,7 +122,7 @@ fn names_are_unique_over_all_registers() {
 
 /// A law whose parameters all have their defaults changes no bit of a world, nor of what is sensed in it.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn laws_at_their_default_change_nothing() {
     use dwell::{EnvConfig, WorldConfig};
     use dwell_scene::LawSpec;

@@ -182,7 +182,7 @@ fn an_episode_has_the_bits_of_the_golden_digest_in_every_process_and_for_any_num
 /// In company, after another house was played in with other laws by another body, and on after a snapshot that went through
 /// bytes while the world went astray.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn company_other_worlds_and_snapshots_change_no_bit() {
     let actions = &actions()[..FIRST_STEPS];
     let mut alone = batch(1, 2);

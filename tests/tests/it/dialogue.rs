@@ -315,7 +315,7 @@ fn play(env: &mut Env, seed: u64) -> StepInfo {
 /// With questions the expert finds the right one; without it stops at a thing that fits and is right as often as by chance, within what
 /// chance allows in 999 of 1,000 runs.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn who_asks_is_right_and_who_does_not_guesses() {
     let (mut asker, mut guesser) = (env(Value::Null), env(json!({"max_questions": 0})));
     let (mut expected, mut variance, mut right) = (0.0, 0.0, 0.0);

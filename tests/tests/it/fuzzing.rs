@@ -43,7 +43,7 @@ fn run(name: &str, count: usize) -> (usize, Vec<String>) {
 /// 2,000 in all; `DWELL_FUZZ=N` sets how many, as `DWELL_TEST_ALL=1` sets 1,000,000. `DWELL_FUZZ_ONLY=NAME` does the share of
 /// one sample.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn mutated_files_end_in_an_error_or_in_a_house() {
     let number = std::env::var("DWELL_FUZZ").ok();
     let all = std::env::var_os("DWELL_TEST_ALL").map(|_| 1_000_000);

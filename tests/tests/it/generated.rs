@@ -41,7 +41,7 @@ fn assert_valid(all: &[CheckCounts]) {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn houses_of_seeds_are_valid_as_they_stand() {
     let check =
         |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Geometric);
@@ -49,7 +49,7 @@ fn houses_of_seeds_are_valid_as_they_stand() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn houses_of_seeds_stay_as_they_are_when_physics_begins() {
     let check = |seed: usize| check_house(seed as u64, &HouseSpec::default(), CheckDepth::Settled);
     assert_valid(&Threads::default().map(settled(), check));
@@ -72,7 +72,7 @@ fn a_house_whose_lines_differ_by_rounding_is_valid() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn built_in_houses_are_valid_and_stay_as_they_are() {
     let specs = builtin::names().iter().map(|name| builtin::spec(name));
     let looked: Vec<CheckCounts> = specs

@@ -198,7 +198,7 @@ fn play(env: &mut Env, seed: u64, hiders_stand: bool) -> Vec<StepInfo> {
 /// Who knows where the hiders are finds them in nearly all episodes; from one who knows the house alone those who hide stay hidden longer than
 /// those who stand where they began.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn experts_hide_and_find() {
     let mut knows = env(json!({"wait_steps": 100, "steps": 600}), 3, &[]);
     let found = (0..6).filter(|seed| {

@@ -277,7 +277,7 @@ fn mirrored(action: DiscreteAction) -> DiscreteAction {
 
 /// The expert follows routes; who stops at once, early or elsewhere, or turns to the other sides, does not.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn routes_are_followed_by_the_expert_alone() {
     let (houses, episodes) = if dwell_tests::runs_all() {
         (40, 8)
@@ -374,7 +374,7 @@ fn routes_are_followed_by_the_expert_alone() {
 
 /// A route that is restored in the middle goes on as it was.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_restored_route_knows_what_was_passed() {
     let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
     let settings = json!({"forms": ["route"]});
@@ -427,7 +427,7 @@ fn routes_are_a_form_like_others() {
 
 /// Settings that no route keeps to are told, and no less.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_cannot_be_told_is_refused() {
     let refused = |house: &str, settings: Value| {
         let (house, _) = dwell_houses::open(house).unwrap();

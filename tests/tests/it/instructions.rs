@@ -367,7 +367,7 @@ fn is_hand(action: DiscreteAction) -> bool {
 /// Every plan of the expert is accepted, and what breaks it is rejected: to stop in between, to keep the hands still, to walk at random.
 /// The task's verdict is that of the words in every case.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn verdicts_are_those_of_the_words() {
     let (houses, episodes) = if dwell_tests::runs_all() {
         (1000, 2)
@@ -439,7 +439,7 @@ fn meant_hands(env: &mut Env, seed: u64) -> bool {
 
 /// An episode that is restored after its first step is done knows that it is.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_restored_instruction_knows_what_is_done() {
     let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
     let settings = json!({

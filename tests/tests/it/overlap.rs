@@ -71,7 +71,7 @@ fn play(renderer: &BackEnd, blurs: bool, overlaps: bool) -> Vec<Vec<Vec<u8>>> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn overlapped_pictures_are_those_of_the_same_step() {
     let mut renderers = vec![BackEnd::Cpu];
     renderers.extend(adapter_paths());
@@ -93,7 +93,7 @@ fn overlapped_pictures_are_those_of_the_same_step() {
 
 /// A picture too large for the adapter is refused when it is waited for, not when it is started, and again by the next call.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_goes_wrong_meanwhile_is_told_by_the_call_that_waits() {
     for renderer in adapter_paths() {
         // The first hits of 16 million pixels take 256 MiB, twice what many an adapter lets a kernel use.

@@ -184,7 +184,7 @@ fn a_body_that_begins_too_large_is_refused_and_one_in_the_way_put_aside() {
 /// how joints hang: those look at all contacts anew and wake what sleeps. Of materials, pairs and parts
 /// one in 32 stands for all, one in 128 without `DWELL_TEST_ALL=1`.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_is_set_and_set_back_leaves_no_trace() {
     let mut world = world();
     let (start, whole) = (world.state().clone(), world.hash());

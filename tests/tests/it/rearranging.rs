@@ -87,7 +87,7 @@ fn energy(goal: &TurnedBox, now: &TurnedBox) -> f64 {
 
 /// Energies are those of boxes of another engine with volumes counted by points, all along an episode; the reward is their decrease.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn energies_are_those_of_an_independent_count() {
     let settings =
         json!({"min_things": 2, "max_openables": 0, "reward": {"step": 0.0, "success": 0.0}});
@@ -247,7 +247,7 @@ fn what_is_carried_away_is_newly_misplaced() {
 /// The rows of the sensor are the boxes of the goal, as somebody sees them who stands where the agent does; the same bits come from a
 /// restored snapshot, with the same reward of the next step.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn goals_are_told_from_where_the_agent_stands() {
     let made = || {
         let env = env(json!({"min_things": 2}), &["rearrangegoal"]);
@@ -299,7 +299,7 @@ fn goals_are_told_from_where_the_agent_stands() {
 
 /// The picture of the goal is another one than that of the house while things are misplaced in view, and the same once they are not.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_picture_of_the_goal_is_that_of_the_house_put_right() {
     let sensors = ["rgb", "unshuffled_rgb"];
     let env = env(json!({"max_things": 2, "max_openables": 0}), &sensors);

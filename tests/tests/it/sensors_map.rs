@@ -105,7 +105,7 @@ fn without_fog_the_map_is_the_navigation_grid() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_is_known_agrees_with_the_grid_and_only_grows() {
     let fixed = json!({"name": "start", "axes": "start", "width": 200, "height": 200});
     let mut batch = apartment_map(&[
@@ -250,7 +250,7 @@ fn nothing_behind_a_closed_door_is_seen_until_it_opens() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_was_seen_comes_back_and_does_not_depend_on_being_observed() {
     let sensors = [("top_down_map", settings(&json!({})))];
     let mut batch = apartment_map(&sensors);

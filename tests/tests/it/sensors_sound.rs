@@ -188,7 +188,7 @@ fn levels_and_signs_are_those_of_distance_and_direction() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn receivers_go_on_with_the_same_bits_after_a_restore() {
     let receivers = [
         ("ears", json!({})),

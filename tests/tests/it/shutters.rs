@@ -108,7 +108,7 @@ fn back_ends() -> Vec<BackEnd> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
     for renderer in back_ends() {
         let still = observe(&mut batch(0..2, &renderer, &[]));
@@ -159,7 +159,7 @@ fn shutters_in_a_batch_give_the_bits_of_worlds_alone() {
 
 /// More worlds than are exposed at once.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn many_worlds_with_open_shutters_are_those_of_few() {
     let laws = [blurs()];
     let all = observe(&mut batch(0..40, &BackEnd::Cpu, &laws));
@@ -168,7 +168,7 @@ fn many_worlds_with_open_shutters_are_those_of_few() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn adapters_roll_and_blur_as_the_processor_does() {
     let laws = [rolls(), blurs()];
     let by_cpu = observe(&mut batch(0..4, &BackEnd::Cpu, &laws));

@@ -54,7 +54,7 @@ fn source(env: &Env) -> Vec3 {
 
 /// The expert's answer, turned into a point by rotations, is the source; it is as far and as high as the settings say, and in sight.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_right_answer_points_at_the_source() {
     let mut env = env(json!({"min_distance_m": 1.0, "max_distance_m": 4.0, "min_height_m": 0.5}));
     let (mut left, mut above) = (0, 0);
@@ -96,7 +96,7 @@ fn the_right_answer_points_at_the_source() {
 
 /// Errors are those of spherical trigonometry, success is decided by the settings' angle and class, and rewards are the settings'.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn errors_are_angles_on_the_sphere() {
     let settings = json!({
         "success_angle_deg": 25.0,
@@ -148,7 +148,7 @@ fn errors_are_angles_on_the_sphere() {
 
 /// The ear on the side that the answer says is the louder one.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_nearer_ear_hears_it_louder() {
     // A noise of all frequencies near the head: further away, or with tones, the room decides which ear hears more.
     let settings = json!({"sounds": ["vacuum_cleaner"], "max_distance_m": 1.0});

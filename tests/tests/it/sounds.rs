@@ -136,7 +136,7 @@ fn a_sound_is_heard_from_its_start_to_its_end_and_no_longer() {
 
 /// Twenty decibels are ten times the pressure, sample for sample, and a level that is set acts from the next step on.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn levels_are_pressures() {
     let loud = |level_db: f32, later_db: Option<f32>| {
         let mut world = bare(&WorldConfig::default());
@@ -329,7 +329,7 @@ fn a_restored_world_sounds_the_same() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn sounds_of_objects_are_silenced_and_move_with_what_they_sit_on() {
     let mut world = World::new(dwell_tests::apartment(), &WorldConfig::default()).unwrap();
     world.reset(RandomKey::root(1)).unwrap();

@@ -69,7 +69,7 @@ fn played(batch: &mut Batch, most: usize) -> (Vec<u64>, Vec<Vec<Vec<u8>>>, bool,
 
 /// With the same seed a stated episode has the bits of the drawn one: observations, states, SPL.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn an_episode_that_states_what_was_drawn_is_the_drawn_one() {
     for task in ["PointNav", "ObjectNav", "AudioNav"] {
         let mut sensors = vec!["gps", "compass"];
@@ -335,7 +335,7 @@ fn a_goal_without_a_way_is_told() {
 
 /// Every task takes stated episodes, or refuses them with a sentence: none plays something else.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn tasks_that_draw_everything_refuse_stated_episodes() {
     for kind in tasks::all().iter().filter(|kind| kind.min_agents == 1) {
         let mut env = dwell_tests::env_of(kind.name, &["gps"]);
@@ -352,7 +352,7 @@ fn tasks_that_draw_everything_refuse_stated_episodes() {
 
 /// A sound that is stated to come later and to end is heard then, and at no other time; a snapshot goes on with it.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_sound_begins_and_ends_when_it_is_stated() {
     let mut batch = Batch::new(vec![env("AudioNav", &["audio"])], Threads::ONE).unwrap();
     batch.reset(&[Some(3)]).unwrap();

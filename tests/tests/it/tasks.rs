@@ -60,7 +60,7 @@ fn ints(bytes: &[u8]) -> Vec<i32> {
 
 /// Nobody succeeds by stopping at once; and who stops in vain is paid what the settings say.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn stopping_at_the_start_is_no_success() {
     for kind in with_goal() {
         let settings =
@@ -85,7 +85,7 @@ fn stopping_at_the_start_is_no_success() {
 
 /// Starts keep to the asked distances, and to the ratio of the walkable to the straight one.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn starts_lie_as_far_as_asked() {
     for kind in with_goal() {
         let settings = json!({"min_distance_m": 3.0, "max_distance_m": 5.0});
@@ -129,7 +129,7 @@ fn starts_lie_as_far_as_asked() {
 
 /// With `ends_at_goal` the way of the expert ends in success before it stops, in every task.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn an_episode_that_ends_at_its_goal_needs_no_stop() {
     for kind in with_goal() {
         let mut sparse = json!({"ends_at_goal": true, "reward": {"distance": 0.0}});
@@ -160,7 +160,7 @@ fn an_episode_that_ends_at_its_goal_needs_no_stop() {
 
 /// The same bits of the goals' sensors at any number of threads, and from a restored snapshot; the goal is told the same.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn sensors_of_goals_give_the_same_after_restoring_and_with_threads() {
     for kind in with_goal() {
         let sensors = goal_sensors(kind);
@@ -222,7 +222,7 @@ fn a_point_goal_is_given_as_seen_from_the_agent() {
 
 /// What is told as a class is what the things are in the semantic image, and the rooms are of the kind.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn classes_and_kinds_are_those_of_the_goals() {
     let mut batch = batch_of(dwell_tests::env_of(
         "ObjectNav",
@@ -307,7 +307,7 @@ fn an_image_goal_is_what_is_seen_there() {
 
 /// A source plays over the goal, and is heard there louder than at the start.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_sound_comes_from_the_goal() {
     let level = |settings: Value| {
         let mut batch = batch_of(env_with("AudioNav", settings, &["audio", "spectrogram"]));

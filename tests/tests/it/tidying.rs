@@ -52,7 +52,7 @@ fn the_rules_hold_where_houses_have_their_things() {
 /// What is displaced lies where no rule has it, at rest, and who stops then has not succeeded; the expert puts all of it where a rule
 /// has it, and what it is paid is the number of things and the success.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn things_lie_where_they_do_not_belong_and_then_where_they_do() {
     let mut env = env(json!({"reward": {"step": 0.0, "wrong_stop": -0.5}}));
     let (mut solved, mut on_floor) = (0, 0);

@@ -55,7 +55,7 @@ fn play(env: &mut Env, seed: u64) -> Vec<StepInfo> {
 /// The guide's word is enough: the pairs succeed, in all of which both do. Muted the follower is at chance, 1 of 8: of 16 more than 7 have
 /// a probability below 0.1 %.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn who_is_told_by_voice_finds_the_thing_and_who_is_not_guesses() {
     let settings = json!({"choices": 8, "max_distance_m": 8.0});
     // Those who guess, for as many episodes as tell them from those who know, with `DWELL_TEST_ALL=1`.
@@ -103,7 +103,7 @@ fn a_goal_is_shared_and_told_to_the_guide_alone() {
 
 /// The expert keeps near the right leader, and near the person and looking at it, more than half of the time; who stands still does neither.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn who_follows_is_near_and_who_stands_is_not() {
     for (task, agents, scripted) in [("PiedPiper", 3, &[1, 2][..]), ("SocialNav", 2, &[1][..])] {
         let mut env = env(task, json!({"steps": 400}), agents, scripted, false);
@@ -139,7 +139,7 @@ fn who_follows_is_near_and_who_stands_is_not() {
 
 /// Scripted agents go on from a snapshot, and to stop at once is never success.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn scripted_agents_go_on_from_snapshots_and_stop_is_no_success() {
     for (task, agents, scripted) in [
         ("PiedPiper", 3, &[1, 2][..]),

@@ -214,7 +214,7 @@ fn understood(world: &mut World, effort: VocalEffort) -> (f64, f64) {
 
 /// Noise at the listener's side masks: the louder it is the less is understood, and a shout comes through again.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn noise_masks_and_shouting_helps() {
     let engines = room();
     let run = |noise_db: Option<f32>, effort| {

@@ -44,7 +44,7 @@ fn a_restored_world_continues_with_the_same_bits() {
 /// 256 KiB and 2 KiB a body. A head remembers, of each of four sources, the energies that arrive of a second and what it played,
 /// samples that do not pack: 320 KiB.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn snapshots_of_worlds_stay_within_their_size() {
     let mut world = world();
     world.reset(RandomKey::root(4)).unwrap();
@@ -80,7 +80,7 @@ const BYTES_OF_A_HEAP: (usize, usize, usize) = (128 * 1024, 45, 350);
 /// All that can be picked up is dropped on one spot, a metre and a half across: some hundred things, 8,000 near pairs. Of eight throws
 /// the one with the most bytes a pair; with `DWELL_TEST_ALL=1` the first, too.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_snapshot_of_a_heap_stays_within_its_size_and_goes_on_with_the_same_bits() {
     throw(5);
     if dwell_tests::runs_all() {
@@ -234,7 +234,7 @@ fn gathering(agents: usize) -> World {
 
 /// An agent's hearing does not depend on who else listens, nor on how often it is asked.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn listening_changes_nothing() {
     let run = |ears: &[(AgentId, usize)], asks: usize| {
         let mut world = gathering(2);
@@ -256,7 +256,7 @@ fn listening_changes_nothing() {
 
 /// An agent with a longer window keeps what was heard, and one that opens its ears late hears what sounds then, not before.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn windows_grow_backwards_and_time_goes_on_without_ears() {
     let mut world = gathering(1);
     world.enable_listeners(&[(AGENT, 800)]).unwrap();

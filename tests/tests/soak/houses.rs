@@ -165,7 +165,7 @@ fn play(mut watch: Option<&mut Watch>) -> u64 {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn episodes_in_many_houses_leave_nothing_behind_and_repeat() {
     if std::env::var_os(AGAIN).is_some() {
         println!("{HASH}{:016x}", play(None));

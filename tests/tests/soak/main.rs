@@ -281,7 +281,7 @@ fn soak(house: House, name: &str) {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn long_random_play_in_the_apartment_stays_sound_and_repeats() {
     let house = dwell_houses::open("builtin:apartment").unwrap().0;
     soak(

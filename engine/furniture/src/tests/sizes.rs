@@ -112,7 +112,7 @@ fn categories_are_known_and_names_are_unique_within_a_model() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_same_key_gives_the_same_bytes() {
     every_draw(|case: &Case| {
         let again = (case.entry.build)(case.style, case.key);
@@ -123,7 +123,7 @@ fn the_same_key_gives_the_same_bytes() {
 
 /// Twenty houses do not have the same thing twenty times: of 20 draws at least three differ.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn other_keys_give_other_things() {
     for entry in entries() {
         let style = STYLES.iter().find(|style| entry.suits(style)).unwrap();

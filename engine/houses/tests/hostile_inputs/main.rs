@@ -112,7 +112,7 @@ fn wrong<'a>(cases: impl IntoIterator<Item = &'a Case>) -> Vec<String> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn gltf_files() {
     check(gltf::CASES);
 }

@@ -133,7 +133,7 @@ fn shared_files_that_were_changed_or_name_others_are_refused() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn suncg_houses_share_models_and_textures() {
     let folder = tempfile::tempdir().unwrap();
     let root = folder.path().join("many");

@@ -54,7 +54,7 @@ fn in_both(settings: &Value) -> [Env; 2] {
 
 /// Rooms by their outlines, numbers by the house's list, nearness by boxes, states by joints and switches; and every kind is asked for.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn answers_are_those_of_the_house() {
     let mut judged: BTreeMap<&str, [usize; 2]> = BTreeMap::new();
     for mut env in in_both(&Value::Null) {
@@ -92,7 +92,7 @@ fn answers_are_those_of_the_house() {
 
 /// What is on a thing rests on it by rays, what is next to it is near by its box and in its room; it is called as the answer says.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn what_is_somewhere_is_there() {
     let (mut on, mut beside) = (0, 0);
     for mut env in in_both(&json!({"kinds": ["place"]})) {
@@ -138,7 +138,7 @@ fn what_is_somewhere_is_there() {
 
 /// The colour that is asked for is that of most of the thing's pixels, as the expert sees it where it answers.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn colors_are_those_of_the_pixels() {
     let (mut agree, mut judged) = (0, 0);
     let mut words: BTreeSet<&str> = BTreeSet::new();
@@ -190,7 +190,7 @@ fn colors_are_those_of_the_pixels() {
 
 /// Every text keeps to the limits, each of its definite phrases means one thing or room, and it is read as a question with that answer.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_question_means_one_thing_and_has_one_answer() {
     let mut texts = BTreeSet::new();
     for mut env in in_both(&Value::Null) {
@@ -222,7 +222,7 @@ fn every_question_means_one_thing_and_has_one_answer() {
 
 /// `yes` is as often right as `no`, within what chance allows in 999 of 1,000 runs.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn yes_and_no_are_as_frequent() {
     for kind in ["existence", "comparison", "state"] {
         let mut env = env(json!({"kinds": [kind]}));
@@ -277,7 +277,7 @@ fn answers_are_paid_as_the_settings_say() {
 
 /// What is measured of the way is what one measures by oneself step by step; and after a snapshot it goes on the same.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_way_is_measured_and_goes_on_after_a_snapshot() {
     let mut env = env(json!({"min_distance_m": 3.0}));
     let mut entered_later = 0;

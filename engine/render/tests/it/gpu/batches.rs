@@ -102,7 +102,7 @@ fn rows_are_those_of_the_whole_picture() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn later_batches_make_no_buffers() {
     let Some(shared) = gpu() else { return };
     for path in VisibilityPath::ALL {
@@ -130,7 +130,7 @@ fn later_batches_make_no_buffers() {
 
 /// However many pieces a house has, and with all of them drawn: one call for a view.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_view_is_drawn_by_one_call() {
     let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;
@@ -162,7 +162,7 @@ fn a_view_is_drawn_by_one_call() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn culling_changes_no_pixel() {
     let Some(pair) = pair_by(VisibilityPath::Raster) else {
         return;

@@ -116,7 +116,7 @@ fn moved(path: VisibilityPath) -> Option<Moved> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn every_camera_sees_the_same_by_cpu_and_gpu_after_things_moved() {
     cameras_agree(VisibilityPath::Compute, &cameras());
 }

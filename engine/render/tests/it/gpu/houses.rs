@@ -72,7 +72,7 @@ fn agree(name: &str, house: &Arc<House>, count: usize, path: VisibilityPath) {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn the_sample_house_looks_the_same_by_cpu_and_gpu() {
     if let Some(house) = suncg() {
         let count = if tests_all() { 50 } else { 10 };
@@ -115,7 +115,7 @@ fn lit_agrees(name: &str, house: Arc<House>, count: usize, path: VisibilityPath)
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn lit_houses_look_the_same_by_cpu_and_gpu() {
     let (in_suncg, generated) = if tests_all() { (200, 40) } else { (4, 3) };
     for path in VisibilityPath::ALL {
@@ -130,7 +130,7 @@ fn lit_houses_look_the_same_by_cpu_and_gpu() {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn generated_houses_look_the_same_by_cpu_and_gpu() {
     for seed in ["seed:3", "seed:8"] {
         let house = Arc::new(dwell_houses::open(seed).unwrap().0);

@@ -162,7 +162,7 @@ fn taken(
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn a_batch_too_large_for_any_buffer_is_cut_and_shows_the_same() {
     let Some(shared) = gpu() else { return };
     for path in VisibilityPath::ALL {

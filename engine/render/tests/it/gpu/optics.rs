@@ -99,7 +99,7 @@ pub(super) fn views(camera: Camera, preset: Preset) -> Vec<View> {
 }
 
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn glass_mirrors_and_light_look_the_same_by_every_camera() {
     for path in VisibilityPath::ALL {
         let Some(pair) = Pair::new(room(), path) else {
@@ -130,7 +130,7 @@ fn glass_mirrors_and_light_look_the_same_by_every_camera() {
 
 /// `full` is rendered by `cpu` whoever is asked, between pictures that are not.
 #[test]
-#[ignore = "long: make test runs one of four shares of these, make test-all all"]
+#[ignore = "long: make test runs one of eight shares of these, make test-all all"]
 fn full_pictures_are_those_of_cpu() {
     let Some(pair) = Pair::new(room(), VisibilityPath::Raster) else {
         return;

@@ -497,7 +497,7 @@ mod tests {
 
     /// It goes to what the replies are about, not to what was drawn.
     #[test]
-    #[ignore = "long: make test runs one of four shares of these, make test-all all"]
+    #[ignore = "long: make test runs one of eight shares of these, make test-all all"]
     fn the_asker_goes_where_the_replies_lead() {
         let house = dwell_houses::builtin::build("apartment").unwrap();
         let config = WorldConfig {
