@@ -19,6 +19,7 @@ pub mod example;
 mod experiment;
 mod fit;
 mod format_number;
+mod median;
 mod options;
 mod progress;
 mod report;

@@ -9,7 +9,7 @@ use super::{
 };
 use crate::bundle::Bundle;
 use crate::error::CalibrationError;
-use crate::fit::median;
+use crate::median::median;
 use crate::options::CalibrationOptions;
 use dwell_physics::PhysicsConfig;
 use dwell_scene::{JointCommand, JointId, Servo};

@@ -8,4 +8,4 @@ mod robust;
 
 pub(crate) use cma_es::CmaEs;
 pub(crate) use gauss_newton::{CauseSet, FitResult, FitTask};
-pub(crate) use robust::{HuberLoss, median};
+pub(crate) use robust::HuberLoss;

@@ -1,5 +1,7 @@
 //! Robust losses: samples far from the rest count less.
 
+use crate::median::median;
+
 /// Number of robust standard deviations from which on a residual counts less.
 const TURN: f64 = 3.0;
 
@@ -49,15 +51,6 @@ impl HuberLoss {
             self.turn / size
         }
     }
-}
-
-/// The median; 0 of nothing. Puts `values` into another order.
-pub(crate) fn median(values: &mut [f64]) -> f64 {
-    if values.is_empty() {
-        return 0.0;
-    }
-    let middle = values.len() / 2;
-    *values.select_nth_unstable_by(middle, f64::total_cmp).1
 }
 
 #[cfg(test)]

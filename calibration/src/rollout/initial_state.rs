@@ -4,7 +4,7 @@ use super::motion::MotionState;
 use super::pose_tracks::PoseTrack;
 use super::regime::ContactRegime;
 use crate::bundle::rotation_vector_between;
-use crate::fit::median;
+use crate::median::median;
 use dwell_scene::random::{RandomKey, RandomStream};
 use glam::{DQuat, DVec3};
 use serde::Serialize;

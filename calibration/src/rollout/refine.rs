@@ -3,8 +3,8 @@
 use super::motion::Deviation;
 use super::regime::ContactRegime;
 use super::windows::{HORIZONS, WindowPrediction};
-use crate::fit::median;
 use crate::format_number::format_number;
+use crate::median::median;
 use serde::Serialize;
 
 /// Number of steps of the finer simulation that make one of the other.

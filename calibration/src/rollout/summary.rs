@@ -1,7 +1,7 @@
 //! Mean, median and spread over episodes.
 
 use super::score::MeanDeviation;
-use crate::fit::median;
+use crate::median::median;
 use serde::Serialize;
 
 /// Statistics over episodes.

@@ -4,7 +4,7 @@ use super::motion::{Deviation, MotionState};
 use super::regime::ContactRegime;
 use super::subject::RolloutSubject;
 use crate::error::CalibrationError;
-use crate::fit::median;
+use crate::median::median;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use serde::Serialize;

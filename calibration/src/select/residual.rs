@@ -4,7 +4,7 @@ use super::learnable::LearnableResidual;
 use super::quantum::rounding_sd;
 use super::spectrum::SlowResidual;
 use crate::experiment::{Experiment, ResidualStructure};
-use crate::fit::median;
+use crate::median::median;
 use serde::Serialize;
 use std::collections::BTreeMap;
 

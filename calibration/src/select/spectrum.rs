@@ -5,7 +5,8 @@
 
 use crate::error::CalibrationError;
 use crate::experiment::{Experiment, ParameterIndex};
-use crate::fit::{FitResult, median};
+use crate::fit::FitResult;
+use crate::median::median;
 use dwell_scene::parallel::Threads;
 use nalgebra::{DMatrix, DVector};
 use serde::Serialize;

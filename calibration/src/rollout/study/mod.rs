@@ -313,7 +313,7 @@ impl ModelReport {
         (0..self.model.parameters.len())
             .map(|k| {
                 let mut column: Vec<f64> = self.chosen.iter().map(|values| values[k]).collect();
-                crate::fit::median(&mut column)
+                crate::median::median(&mut column)
             })
             .collect()
     }

@@ -2,7 +2,7 @@
 
 use crate::bundle::read_error;
 use crate::error::CalibrationError;
-use crate::fit::median;
+use crate::median::median;
 use crate::rollout::{MeanDeviation, PoseTracks, ScoreSummary};
 use dwell_scene::file;
 use dwell_scene::random::RandomKey;
