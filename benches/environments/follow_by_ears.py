@@ -23,6 +23,7 @@ from typing import Any
 
 import numpy as np
 
+from dwell.challenge.scores import wilson_interval
 from dwell.follow_policy import SENSORS, FollowByEars
 from dwell.pettingzoo import parallel_env
 
@@ -98,15 +99,6 @@ def why(row: dict[str, Any]) -> str:
     return "never near" if row["found"] < 0 else "lost again, or found late"
 
 
-def wilson(successes: int, count: int) -> tuple[float, float]:
-    """The 95 % interval of a share."""
-    z, share = 1.96, successes / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    spread = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    spread /= 1 + z * z / count
-    return middle - spread, middle + spread
-
-
 def main() -> None:
     """Plays what is missing, and prints what all lines of the files say."""
     parser = argparse.ArgumentParser()
@@ -138,7 +130,7 @@ def main() -> None:
             out.write(json.dumps(rows[-1]) + "\n")
             out.flush()
     won = sum(row["success"] for row in rows)
-    low, high = wilson(won, len(rows))
+    low, high = wilson_interval(won, len(rows)) or (0.0, 1.0)
     print(f"success {won} of {len(rows)}: {100 * won / len(rows):.0f} % ", end="")
     print(f"({100 * low:.0f} to {100 * high:.0f})")
     following = np.array([row["following"] for row in rows])

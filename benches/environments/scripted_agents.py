@@ -21,6 +21,7 @@ from typing import Any
 import numpy as np
 
 from dwell import ConfigError
+from dwell.challenge.scores import wilson_interval
 from dwell.pettingzoo import DwellParallelEnv, parallel_env
 
 
@@ -56,15 +57,6 @@ def is_number(value: object) -> bool:
     """Whether it is one number that can be written down."""
     whole = isinstance(value, bool | int | np.bool_ | np.integer)
     return whole or (isinstance(value, float | np.floating) and math.isfinite(value))
-
-
-def wilson(successes: int, count: int) -> tuple[float, float]:
-    """The 95 % interval of a share (Wilson 1927)."""
-    z, share = 1.96, successes / count
-    middle = (share + z * z / (2 * count)) / (1 + z * z / count)
-    spread = z * math.sqrt(share * (1 - share) / count + z * z / (4 * count * count))
-    spread /= 1 + z * z / count
-    return middle - spread, middle + spread
 
 
 def main() -> None:
@@ -103,7 +95,7 @@ def main() -> None:
     print(f"{len(games)} episodes in {len({row['scene'] for row in games})} houses; ", end="")
     print(f"refused {len(rows) - len(games)}; steps {np.mean([row['steps'] for row in games]):.0f}")
     won = sum(all(own["success"] for own in row["agents"].values()) for row in games)
-    low, high = wilson(won, len(games))
+    low, high = wilson_interval(won, len(games)) or (0.0, 1.0)
     print(f"all succeed in {won}: {100 * won / len(games):.0f} %", end=" ")
     print(f"({100 * low:.1f} to {100 * high:.1f})")
     for name in games[0]["agents"]:
