@@ -4,6 +4,7 @@ use super::MeasuredEpisode;
 use super::file::MeasurementDescription;
 use super::unit_checks::{self, CoordinateTrack};
 use crate::error::CalibrationError;
+use crate::median::median;
 
 type JumpCheck = Result<(), CalibrationError>;
 
@@ -133,9 +134,10 @@ pub(super) fn check_servos(
             }
         }
     }
-    let Some(distance) = unit_checks::median(&mut distances).filter(|rad| *rad > LOST_RAD) else {
+    let distance = median(&mut distances);
+    if distance.is_nan() || distance <= LOST_RAD {
         return Ok(());
-    };
+    }
     let hint = unit_checks::degrees_hint("positions", positions / targets)
         .or_else(|| unit_checks::degrees_hint("targets", targets / positions))
         .unwrap_or_else(|| format!("check units, signs and zeros of both; {counts}"));

@@ -3,6 +3,7 @@
 use super::MeasuredEpisode;
 use super::file::{BundleKind, MeasurementDescription};
 use crate::error::CalibrationError;
+use crate::median::median;
 use std::collections::BTreeMap;
 
 type UnitCheck = Result<(), CalibrationError>;
@@ -79,12 +80,6 @@ pub(super) fn length_unit_hint(what: &str, factor: f64) -> Option<String> {
     Some(unit_conversion_hint(what, *unit, "metres_per_unit"))
 }
 
-/// The median; sorts.
-pub(super) fn median(values: &mut [f64]) -> Option<f64> {
-    values.sort_by(f64::total_cmp);
-    values.get(values.len() / 2).copied()
-}
-
 /// Refuses times that occur twice, or that do not rise evenly at a rate. `times`: rising.
 pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> UnitCheck {
     let Some(first) = times.first() else {
@@ -97,7 +92,7 @@ pub(super) fn check_even_sampling(at: &str, times: &[f64], rate_hz: f64) -> Unit
     };
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let last = steps[k - 1];
-    let usual = median(&mut steps).unwrap_or(0.0);
+    let usual = median(&mut steps);
     let unit = TIMES
         .iter()
         .find(|unit| is_near(usual * rate_hz, unit.1, SPACING_TOLERANCE));
@@ -153,7 +148,7 @@ impl CoordinateTrack {
     fn noise_m(&self) -> f64 {
         let third = |w: &[f64]| (w[3] - 3.0 * w[2] + 3.0 * w[1] - w[0]).abs();
         let mut sizes: Vec<f64> = self.m.windows(4).map(third).collect();
-        median(&mut sizes).unwrap_or(0.0) / (0.674_5 * 20.0_f64.sqrt())
+        median(&mut sizes) / (0.674_5 * 20.0_f64.sqrt())
     }
 
     /// Returns the point where the body turns from falling to rising, which no flight does, and the height of the rise: (s, m).
@@ -420,7 +415,8 @@ pub(super) fn check_sample_times(at: &str, times: &[f64]) -> UnitCheck {
     }
     let mut steps: Vec<f64> = times.windows(2).map(|pair| pair[1] - pair[0]).collect();
     let gap = steps.iter().position(|step| *step >= LONGEST_STEP_S);
-    let Some(step) = median(&mut steps).filter(|step| *step >= LONGEST_STEP_S) else {
+    let step = median(&mut steps);
+    if step.is_nan() || step < LONGEST_STEP_S {
         return gap.map_or(Ok(()), |k| {
             let found = format!("{} after {}", times[k + 1], times[k]);
             let allowed = format!(
@@ -429,7 +425,7 @@ pub(super) fn check_sample_times(at: &str, times: &[f64]) -> UnitCheck {
             );
             Err(CalibrationError::field(at, "t_s", found, allowed))
         });
-    };
+    }
     let unit = if steps.iter().all(|step| *step == 1.0) {
         "; are frames counted? Divide by the frames a second, or import with \"seconds_per_unit\" in the map's table (1/60 is \
          0.0166667)"
