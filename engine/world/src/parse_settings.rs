@@ -51,15 +51,16 @@ pub(crate) fn parse_task_settings<T: DeserializeOwned + Default>(
 pub fn parse_config<T: DeserializeOwned>(text: &str) -> Result<T, String> {
     serde_json::from_str(text).map_err(|error| {
         let told = plain_json_error(&error);
-        // An unknown field is named already.
-        if told.contains("field `") {
+        let value = serde_json::from_str(text).unwrap_or_default();
+        let mut path = unreadable_place::<T>(&value);
+        if told.starts_with("unknown field") {
+            // It is named already.
+            path.pop();
+        }
+        if path.is_empty() {
             return told;
         }
-        let value = serde_json::from_str(text).unwrap_or_default();
-        match unreadable_place::<T>(&value) {
-            Some(place) => format!("{place}: {told}"),
-            None => told,
-        }
+        format!("{}: {told}", written(&path))
     })
 }
 
@@ -87,8 +88,8 @@ impl Step {
     }
 }
 
-/// The place of the innermost value without which all else can be read; `None` without one.
-fn unreadable_place<T: DeserializeOwned>(root: &Value) -> Option<String> {
+/// The place of the innermost value without which all else can be read; empty without one.
+fn unreadable_place<T: DeserializeOwned>(root: &Value) -> Vec<Step> {
     fn inside<'a>(root: &'a mut Value, path: &[Step]) -> Option<&'a mut Value> {
         path.iter()
             .try_fold(root, |value, step| step.value_in(value))
@@ -116,12 +117,17 @@ fn unreadable_place<T: DeserializeOwned>(root: &Value) -> Option<String> {
             None => break,
         }
     }
+    path
+}
+
+/// A path as people write it: `world.laws[0]`.
+fn written(path: &[Step]) -> String {
     let words = path.iter().enumerate().map(|(k, step)| match step {
         Step::Field(name) if k == 0 => name.clone(),
         Step::Field(name) => format!(".{name}"),
         Step::Row(row) => format!("[{row}]"),
     });
-    (!path.is_empty()).then(|| words.collect())
+    words.collect()
 }
 
 #[cfg(test)]
@@ -150,7 +156,14 @@ mod tests {
         );
         assert_eq!(told("5"), "found integer `5`, expected values by name");
         let nope = told(r#"{"world": {"nope": 1}}"#);
+        let expected = "world: unknown field `nope`, expected";
+        assert!(nope.starts_with(expected), "{nope}");
+        let nope = told(r#"{"nope": 1}"#);
         assert!(nope.starts_with("unknown field `nope`, expected"), "{nope}");
+        assert_eq!(
+            told(r#"{"world": {"laws": [{"id": "drag"}]}}"#),
+            "world.laws[0]: missing field `version`"
+        );
         // Of two faults neither is the one without which all else can be read.
         let both = told(r#"{"task": 5, "world": {"sound_rate_hz": -1}}"#);
         assert!(both.starts_with("found integer"), "{both}");

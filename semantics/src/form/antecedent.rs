@@ -1,7 +1,7 @@
 //! Pronouns and their antecedents.
 
 use super::mention::{
-    exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular,
+    exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular, may_be_one,
     meets_selectional_restriction, subject_with_predicate, topic_of,
 };
 use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
@@ -318,7 +318,8 @@ impl Resolver {
     fn resolve(&mut self, phrase: &mut Phrase, role: PhraseRole, verb: Option<&str>) {
         match phrase {
             Phrase::Pronoun => {
-                let candidates = self.candidates(verb);
+                // "Open the fridge and take a bottle out of it": what is taken is movable, not what it is in.
+                let candidates = self.candidates(verb.filter(|_| role != PhraseRole::Landmark));
                 let choice = self.choices.get(self.counts.len()).copied().unwrap_or(0);
                 self.counts.push(candidates.len());
                 if let Some(found) = candidates.into_iter().nth(choice) {
@@ -513,6 +514,10 @@ impl Resolver {
             if !is_room && !is_own && !phrases.contains(&phrase) {
                 phrases.push(phrase);
             }
+        }
+        // "Both bottles are on the table, and the tray is next to it": next to the table.
+        if phrases.iter().any(may_be_one) {
+            phrases.retain(may_be_one);
         }
         if phrases.is_empty() {
             // "The cup is larger than the tray that supports it": a thing of the same clause, not the one described.

@@ -84,6 +84,14 @@ pub(super) fn is_singular(phrase: &Phrase) -> bool {
     }
 }
 
+/// Returns whether "it" may stand for a phrase: no phrase of several things.
+pub(super) fn may_be_one(phrase: &Phrase) -> bool {
+    match phrase {
+        Phrase::Described(own) => own.quantifier == Quantifier::The || is_indefinite_singular(own),
+        _ => true,
+    }
+}
+
 /// "There is exactly one bottle in the hall, and it is green": the bottle.
 pub(super) fn exactly_one_as_definite(phrase: Phrase) -> Phrase {
     match phrase {

@@ -17,7 +17,7 @@ pub struct LexiconEntry {
     pub forms: Vec<WordForms>,
 }
 
-/// Splits text into normalized words: lower case, punctuation marks apart, `an` as `a`.
+/// Splits text into normalized words: lower case, punctuation marks apart, `an` as `a`. Quotation marks are left out.
 pub fn words(text: &str) -> Vec<String> {
     let mut words = split(text);
     for word in &mut words {
@@ -40,11 +40,16 @@ fn split(text: &str) -> Vec<String> {
         }
     };
     for letter in text.chars() {
+        // The apostrophes of word processors.
+        let letter = match letter {
+            '\u{2018}' | '\u{2019}' | '\u{2bc}' => '\'',
+            letter => letter,
+        };
         if letter.is_alphanumeric() || letter == '-' || letter == '\'' {
             word.push(letter);
         } else {
             flush(&mut word);
-            if !letter.is_whitespace() {
+            if !letter.is_whitespace() && !is_quotation_mark(letter) {
                 word.push(letter);
                 flush(&mut word);
             }
@@ -52,6 +57,13 @@ fn split(text: &str) -> Vec<String> {
     }
     flush(&mut word);
     words
+}
+
+fn is_quotation_mark(letter: char) -> bool {
+    matches!(
+        letter,
+        '"' | '\u{201c}' | '\u{201d}' | '\u{201e}' | '\u{ab}' | '\u{bb}'
+    )
 }
 
 /// The lexicon: its entries, indexed by name and by first word.
@@ -253,6 +265,10 @@ mod tests {
             ["is", "a", "oak-table's", "leg", ",", "there", "?"]
         );
         assert!(words(" \t ").is_empty());
+        assert_eq!(
+            words("There\u{2019}s a \u{201c}red\u{201d} \"bed\""),
+            words("there's a red bed")
+        );
     }
 
     #[test]

@@ -322,10 +322,17 @@ impl Parser<'_> {
         }
     }
 
-    /// The words and lexicon classes that could follow the first `at` words.
+    /// The words and lexicon classes that could follow the first `at` words; first the forms of what stands there that would agree,
+    /// such as "beds" for "bed" after "two".
     fn expected(&self, at: usize) -> Vec<String> {
         let productions = &self.grammar.productions;
+        let lexicon = &self.grammar.lexicon;
         let mut expected: BTreeSet<String> = BTreeSet::new();
+        let mut agreeing: BTreeSet<String> = BTreeSet::new();
+        let found: Vec<_> = match self.words.get(at) {
+            Some(_) => lexicon.matches_at(self.words, at).collect(),
+            None => Vec::new(),
+        };
         let mut predicted = vec![false; productions.of_result.len()];
         let mut open: Vec<NonTerminal> = Vec::new();
         if at == 0 {
@@ -341,7 +348,14 @@ impl Parser<'_> {
                     open.push(*category);
                     return;
                 }
-                Symbol::Argument(_, ArgumentKind::Entry(class, _)) => format!("<{class}>"),
+                Symbol::Argument(_, ArgumentKind::Entry(class, variant)) => {
+                    let entries = found.iter().map(|found| lexicon.entry(found.entry));
+                    for entry in entries.filter(|entry| entry.class == *class) {
+                        let form = entry.forms.get(*variant).and_then(|forms| forms.first());
+                        agreeing.extend(form.map(|words| words.join(" ")));
+                    }
+                    format!("<{class}>")
+                }
                 Symbol::Argument(_, ArgumentKind::Count) => "<count>".to_owned(),
                 Symbol::Argument(_, ArgumentKind::Digits) => "<digits>".to_owned(),
                 Symbol::Argument(_, ArgumentKind::Ordinal) => "<ordinal>".to_owned(),
@@ -362,7 +376,8 @@ impl Parser<'_> {
                 expect(productions.all[*production].symbols.first(), &mut open);
             }
         }
-        expected.into_iter().collect()
+        expected.retain(|name| !agreeing.contains(name));
+        agreeing.into_iter().chain(expected).collect()
     }
 }
 

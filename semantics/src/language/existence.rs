@@ -296,6 +296,12 @@ pub(super) fn fronted_modifiers_from_tree(tree: &Tree) -> Option<Vec<Modifier>> 
             Modifier::new("hangs_on", [places::mount_from_tree(mount)?]),
             Modifier::new("in_room", [room(place)?]),
         ],
+        // "In front of the mirror, on the chest, there is a vase": both are said of the vase.
+        ("front_both", [one, other]) => {
+            let mut both = fronted_modifiers_from_tree(one)?;
+            both.extend(fronted_modifiers_from_tree(other)?);
+            both
+        }
         ("front_from", [place]) => vec![Modifier::new("leads_from", [room(place)?])],
         _ => return None,
     })

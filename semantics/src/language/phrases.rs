@@ -131,6 +131,13 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             "belongs_to".to_owned(),
             phrase(source)?,
         ),
+        // "Close its door": the door of it.
+        ("its" | "i_its", [noun]) => that(
+            Quantifier::The,
+            noun,
+            "belongs_to".to_owned(),
+            Phrase::Pronoun,
+        ),
         ("i_the_that_place", [noun, place]) => {
             let (predicate, place) = place_of(place)?;
             that(Quantifier::The, noun, predicate, place)

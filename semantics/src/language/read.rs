@@ -397,6 +397,9 @@ mod tests {
             "{}",
             told("the chair on is")
         );
+        for text in ["There are two bed.", "How many bed are there?"] {
+            assert!(told(text).contains("one of [\"beds\", "), "{}", told(text));
+        }
         assert!(
             told("find").contains("then the end was found"),
             "{}",

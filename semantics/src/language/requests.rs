@@ -17,12 +17,18 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             let not = Clause::Not(Box::new(possibly_negated_clause(condition)?));
             vec![conditional(not, plan_or_step(then)?, Vec::new())]
         }
-        ("if" | "step_if", [condition, then]) => {
+        ("if", [condition, then]) => {
             vec![conditional(
                 possibly_negated_clause(condition)?,
                 plan_or_step(then)?,
                 Vec::new(),
             )]
+        }
+        ("step_if", [condition, then]) => {
+            let mut condition = possibly_negated_clause(condition)?;
+            let then = plan_or_step(then)?;
+            one_of_the_step(&mut condition, &then);
+            vec![conditional(condition, then, Vec::new())]
         }
         ("if_else", [condition, then, otherwise]) => {
             vec![conditional(
@@ -95,6 +101,26 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         _ => return None,
     })
+}
+
+/// "Bring me the jacket if there is one": a jacket.
+fn one_of_the_step(condition: &mut Clause, then: &[RequestStep]) {
+    let Clause::Exists(Phrase::Described(one)) = condition else {
+        return;
+    };
+    let object = match then.first() {
+        Some(
+            RequestStep::Do { object, .. }
+            | RequestStep::Put { object, .. }
+            | RequestStep::Bring { object, .. },
+        ) => object,
+        _ => return,
+    };
+    if let Phrase::Described(object) = object
+        && **one == Description::new(Quantifier::Some, Noun::SameNoun)
+    {
+        **one = Description::clone(object).with_quantifier(Quantifier::Some);
+    }
 }
 
 /// The step that "once you have opened the door" and "after opening the door" speak of.
@@ -276,6 +302,17 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("look_inside_for", [object]) => {
             find_there(object, Modifier::new("in", [Phrase::Pronoun]))?
         }
+        ("take_out", [object]) => {
+            let Phrase::Described(object) = phrase(object)? else {
+                return None;
+            };
+            RequestStep::Do {
+                verb: "pick_up".to_owned(),
+                object: object
+                    .with_modifier(Modifier::new("in", [Phrase::Pronoun]))
+                    .into(),
+            }
+        }
         ("leave", [object]) => refrain("pick_up", object)?,
         ("do_close_behind", [object]) => act("close", object)?,
         ("put_near", [object, to]) => RequestStep::Put {
@@ -393,6 +430,9 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             object: Phrase::Speaker,
         },
         ("do_on", [object]) => act("switch_on", object)?,
+        ("do_not_on", [object]) => refrain("switch_on", object)?,
+        ("do_not_off", [object]) => refrain("switch_off", object)?,
+        ("do_not_move", [object]) => refrain("touch", object)?,
         ("do_off", [object]) => act("switch_off", object)?,
         ("do_pick_up", [object]) => act("pick_up", object)?,
         ("do_drop", [object]) => act("drop", object)?,

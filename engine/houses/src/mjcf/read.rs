@@ -194,7 +194,8 @@ impl MjcfSource {
     pub(super) fn first_robot(&mut self, report: &mut LoadReport) -> Result<Robot, HousesError> {
         let roots = self.root_bodies();
         let Some(root) = roots.first() else {
-            return refuse_field(self.at.clone(), "a <body> in <worldbody>", "none");
+            let expected = "a <body> in <worldbody> (what <replicate>, <composite> and <flexcomp> make is not read)";
+            return refuse_field(self.at.clone(), expected, "none");
         };
         let left_out = roots.len() - 1 + self.model.bodies[0].body.geoms.len();
         if left_out > 0 {

@@ -99,9 +99,9 @@ impl ProcThorReader<'_> {
         };
         let (middle, turned) = (point(position), rotation(object.rotation));
         if !is_valid_position(middle) || !turned.is_finite() {
-            let reason =
-                "it is no place in a house: position (m) and rotation (degrees) need x, y and z"
-                    .to_owned();
+            let reason = format!(
+                "it is at {middle} (m): position and rotation (degrees) need x, y and z, the position within 10000 m"
+            );
             return self.warn(at, WarningKind::BadTransform { reason });
         }
         let Some(room) = self.containing_or_nearest_room(middle).map(|room| room.id) else {

@@ -178,6 +178,25 @@ fn a_storey_without_end_is_no_house() {
     );
 }
 
+#[test]
+fn parts_that_do_not_exist_are_told_as_stated() {
+    let mut houses = (0..40_u32).map(|seed| {
+        let numbers: Vec<u32> = (0..40)
+            .map(|k| (seed * 40 + k + 1).wrapping_mul(0x85eb_ca6b))
+            .collect();
+        generate::house(&numbers)
+    });
+    let data = houses.find(|data| data.objects.len() > 1).unwrap();
+    let last = data.objects.len() - 1;
+    for count in [u32::MAX, u32::MAX - 1, 1000] {
+        let mut data = data.clone();
+        data.objects.as_mut_slice()[last].part_count = count;
+        let error = House::new(data).unwrap_err().to_string();
+        let told = format!("part_count is {count}; allowed is parts that exist");
+        assert!(error.ends_with(&told), "{error}");
+    }
+}
+
 fn broken(folder: &Path, edit: impl FnOnce(String) -> String) -> String {
     let path = folder.join("a.dwell");
     native::write(&shoebox(), &path).unwrap();

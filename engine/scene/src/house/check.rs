@@ -164,14 +164,15 @@ fn objects(data: &HouseData) -> Result<(), SceneError> {
             object.first_part.0,
             "parts in the order of the objects, at least one each",
         )?;
-        next_part += object.part_count;
+        let left = data.parts.len() - next_part as usize;
         check_range(
             &at,
             "part_count",
-            next_part as usize <= data.parts.len(),
-            next_part,
+            object.part_count as usize <= left,
+            object.part_count,
             "parts that exist",
         )?;
+        next_part += object.part_count;
         for part in object.parts() {
             interrupt::unwind_if_cancelled();
             let part = &data.parts[part];
