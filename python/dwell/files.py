@@ -24,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
+from dwell.messages import printable
 
 #: Drafts for one name that may be in the making at once, and bytes that theirs take from it.
 _MAX_DRAFTS = 10_000
@@ -148,6 +149,7 @@ def parse_json(
         ValueError: It is none, names a key twice in one object, is nested too deep, or holds more
             than is read; the message begins with ``at``.
     """
+    at = printable(at)
     depth, values = _native.json_size_bounds(text)
     if depth > _MAX_DEPTH:
         raise ValueError(f"{at}: nested {depth} deep; at most {_MAX_DEPTH} is read")
@@ -493,7 +495,7 @@ def _refuse_irregular(facts: os.stat_result, name: str) -> None:
 
 
 def _refuse_large(name: str, found: int, allowed: int) -> NoReturn:
-    raise ValueError(f"{name}: {found} bytes; at most {allowed} are read")
+    raise ValueError(f"{printable(name)}: {found} bytes; at most {allowed} are read")
 
 
 class _DuplicateKeyError(ValueError):

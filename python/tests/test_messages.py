@@ -2,11 +2,14 @@
 
 from __future__ import annotations
 
+from collections.abc import Callable
 from pathlib import Path
 
 import pytest
 
+import dwell
 from dwell import cli, files
+from dwell.envs import DwellEnv
 
 MEM = Path("/proc/self/mem")
 needs_mem = pytest.mark.skipif(not MEM.exists(), reason="the system has no /proc")
@@ -42,3 +45,90 @@ def test_a_command_names_the_file_that_it_cannot_read(
     assert cli.main([str(link) if word == "FILE" else word for word in arguments]) == 1
     told = capsys.readouterr().err
     assert told == f"dwell {arguments[0]}: {link}: Input/output error\n"
+
+
+ESC = "\x1b[31m\u202ename"
+
+
+@pytest.fixture
+def junk(tmp_path: Path) -> Path:
+    path = tmp_path / ESC
+    path.write_text('{"a": 1')
+    return path
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda _: dwell.House.expand(ESC),
+        lambda _: DwellEnv("Free", houses=ESC),
+        lambda _: dwell.Head.from_sofa(ESC),
+        lambda _: dwell.register_task(ESC, dwell.Task),
+        dwell.Replay.read,
+        dwell.episodes.read,
+        dwell.evaluation.differences,
+        files.read_json,
+        lambda path: files.read(path, 3),
+    ],
+)
+def test_no_error_has_what_commands_a_terminal(call: Callable[[Path], object], junk: Path) -> None:
+    with pytest.raises(Exception, match=r"\\u001b\[31m\\u202ename") as caught:
+        call(junk)
+    assert str(caught.value).isprintable()
+
+
+def test_an_error_of_a_user_is_printable_and_keeps_what_it_was_made_of() -> None:
+    class MyError(dwell.UsageError):
+        pass
+
+    error = MyError(f"no {ESC}", 1)
+    assert error.args == (f"no {ESC}", 1)
+    assert str(MyError(f"a {ESC}\nb\t")) == "a \\u001b[31m\\u202ename\nb\t"
+    assert str(dwell.ConfigError()) == ""
+
+
+LONG = "x" * 80_000
+
+
+@pytest.mark.parametrize(
+    "call",
+    [
+        lambda: DwellEnv("Free", houses="builtin:studio", reward=LONG),
+        lambda: DwellEnv(f"{LONG}:Y", houses="builtin:studio"),
+        lambda: dwell.register_task(f"{LONG}?", dwell.Task),
+    ],
+)
+def test_an_error_quotes_the_beginning_of_what_it_was_given(call: Callable[[], object]) -> None:
+    with pytest.raises(dwell.ConfigError, match="xxx") as caught:
+        call()
+    assert len(str(caught.value)) < 1000
+
+
+def test_no_error_is_longer_than_people_read() -> None:
+    told = str(dwell.ConfigError(f"begin {LONG} end"))
+    assert len(told) < 8000
+    assert told.startswith("begin xxx")
+    assert told.endswith("xxx end")
+    assert "(76010 characters left out)" in told
+
+
+@pytest.mark.parametrize(
+    "arguments",
+    [
+        [LONG],
+        ["info", f"--unknown={LONG}"],
+        ["describe", "builtin:studio", f"--level={LONG}"],
+        ["views", LONG],
+        *(
+            ["render", "builtin:studio", "--out", "a.png", f"--{name}={LONG}"]
+            for name in ("at", "intrinsics", "projection", "width")
+        ),
+        ["ir", "builtin:studio", f"--source={LONG}"],
+    ],
+)
+def test_bad_usage_is_told_in_few_words(
+    arguments: list[str], capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(arguments) == 2
+    assert "error: " in (told := capsys.readouterr().err)
+    assert len(told) < 2000

@@ -15,9 +15,7 @@ from pathlib import Path
 from typing import Any, TextIO
 
 from dwell.files import parse_json
-
-#: A name of which an error shows the beginning alone.
-_LONG_WORD = re.compile(r"(\S{200})\S{100,}")
+from dwell.messages import printable, with_short_words
 
 
 def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
@@ -178,15 +176,6 @@ def join_negative_points(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-#: What commands a terminal or turns the direction of writing, and what is no text at all.
-_COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-
-
-def printable(text: str) -> str:
-    """Text in which names of strangers command no terminal: they are escaped as in JSON."""
-    return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
-
-
 def _as_json(error: UnicodeError) -> tuple[str, int]:
     """Characters that an encoding lacks, as JSON escapes them."""
     if not isinstance(error, UnicodeEncodeError):
@@ -251,7 +240,7 @@ def sentence(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror is not None:
         where = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
         said = f"{where}{error.strerror}"
-    return _LONG_WORD.sub(lambda word: f"{word[1]}...({len(word[0])} characters)", said)
+    return with_short_words(said)
 
 
 class ProgressBar:
