@@ -132,3 +132,13 @@ def test_bad_usage_is_told_in_few_words(
     assert cli.main(arguments) == 2
     assert "error: " in (told := capsys.readouterr().err)
     assert len(told) < 2000
+
+
+def test_a_field_of_a_spec_is_text_that_utf_8_can_hold(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    out = tmp_path / "new"
+    assert cli.main(["generate", "--count", "1", "--spec", "style=\udcff", "--out", str(out)]) == 1
+    told = "dwell generate: --spec is 'style=\\udcff'; expected text that UTF-8 can hold\n"
+    assert capsys.readouterr().err == told
+    assert not out.exists()

@@ -16,6 +16,7 @@ from typing import Any, TextIO
 
 from dwell.files import parse_json
 from dwell.messages import printable, with_short_words
+from dwell.workers import MAX_WORKERS
 
 
 def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
@@ -58,6 +59,11 @@ def count(text: str, low: int = 0, high: int = sys.maxsize) -> int:
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
     return count(text, low=1)
+
+
+def workers(text: str) -> int:
+    """Reads how many threads or processes are asked for."""
+    return count(text, low=1, high=MAX_WORKERS)
 
 
 def sound_rate(text: str) -> int:
