@@ -49,10 +49,10 @@ def test_workers_above_the_cap_are_refused(
 
 def test_workers_above_the_cap_are_refused_in_python(tmp_path: Path) -> None:
     maker = EpisodeMaker("Free", ["builtin:studio"], count=1)
-    with pytest.raises(dwell.ConfigError, match="workers is 1025; allowed are .* 1 to 1024"):
+    with pytest.raises(dwell.ConfigError, match=r"workers is 1025; allowed are .* 1 to 1024"):
         next(maker.episodes(workers=1025))
     houses = HouseList(["builtin:studio"])
-    with pytest.raises(dwell.ConfigError, match="threads is 0; allowed are .* 1 to 1024"):
+    with pytest.raises(dwell.ConfigError, match=r"threads is 0; allowed are .* 1 to 1024"):
         next(views.make(houses, tmp_path, views.ViewSettings(), threads=0))
 
 

@@ -56,7 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
     parser.add_argument(
-        "--workers", type=workers, help="threads, 1 to 1024 (default: as many as processors)"
+        "--workers", type=workers, help="threads, at most 1024 (default: one a processor)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
