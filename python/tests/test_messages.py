@@ -10,6 +10,7 @@ import pytest
 import dwell
 from dwell import cli, files
 from dwell.envs import DwellEnv
+from dwell.played_actions import unpacked
 
 MEM = Path("/proc/self/mem")
 needs_mem = pytest.mark.skipif(not MEM.exists(), reason="the system has no /proc")
@@ -142,3 +143,31 @@ def test_a_field_of_a_spec_is_text_that_utf_8_can_hold(
     told = "dwell generate: --spec is 'style=\\udcff'; expected text that UTF-8 can hold\n"
     assert capsys.readouterr().err == told
     assert not out.exists()
+
+
+@pytest.mark.parametrize("command", [["render"], ["replay"]])
+@pytest.mark.parametrize("edge", ["-1", "0", "16385", "١٢"])
+def test_edges_of_pictures_are_told_with_what_is_allowed(
+    command: list[str], edge: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for option in ("--width", "--height"):
+        assert cli.main([*command, "x", "--out", "a.png", option, edge]) == 2
+        told = f"{option}: expected a whole number from 1 to 16384, found {edge!r}\n"
+        assert capsys.readouterr().err.endswith(told)
+
+
+@pytest.mark.parametrize("number", ["١", "1_0", "１"])  # noqa: RUF001 - digits of others
+def test_numbers_have_digits_that_tables_have(
+    number: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    for option, value in (("--at", f"{number},1,1"), ("--yaw-deg", number)):
+        assert cli.main(["render", "x", "--out", "a.png", f"{option}={value}"]) == 2
+        assert f"found {value!r}" in capsys.readouterr().err
+    assert cli.main(["check-text", "builtin:studio", "A lamp.", f"--view={number},1,1,0"]) == 1
+    assert f"found '{number},1,1,0'" in capsys.readouterr().err
+
+
+def test_actions_of_a_result_are_told_with_the_limit() -> None:
+    told = "'1\\*99999999999999999999'; expected NUMBER or NUMBER\\*COUNT, each of 1 to 9 digits"
+    with pytest.raises(dwell.ConfigError, match=told):
+        unpacked("actions", "1*99999999999999999999 0")

@@ -14,6 +14,7 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from dwell.camera import MAX_PIXELS
 from dwell.files import parse_json
 from dwell.messages import printable, with_short_words
 from dwell.workers import MAX_WORKERS
@@ -24,10 +25,21 @@ def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
     sys.stdout.write(json.dumps(value, ensure_ascii=False, allow_nan=False) + "\n")
 
 
+def decimal(text: str) -> float:
+    """The number that a text says.
+
+    Raises:
+        ValueError: It is none, or written as only Python reads it: ``1_0``, or in other digits.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError("no number in ASCII digits")
+    return float(text)
+
+
 def point(text: str) -> tuple[float, float, float]:
     """Reads ``X,Y,Z`` in metres."""
     try:
-        x, y, z = (float(part) for part in text.split(","))
+        x, y, z = (decimal(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"expected X,Y,Z in metres, found {text!r}") from None
     if not all(map(math.isfinite, (x, y, z))):
@@ -38,7 +50,7 @@ def point(text: str) -> tuple[float, float, float]:
 def number(text: str) -> float:
     """Reads a finite number."""
     try:
-        value = float(text)
+        value = decimal(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -59,6 +71,11 @@ def count(text: str, low: int = 0, high: int = sys.maxsize) -> int:
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
     return count(text, low=1)
+
+
+def image_edge(text: str) -> int:
+    """Reads a width or a height, pixels."""
+    return count(text, low=1, high=MAX_PIXELS)
 
 
 def workers(text: str) -> int:
