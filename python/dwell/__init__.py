@@ -15,6 +15,7 @@ import os
 import sys
 from typing import TYPE_CHECKING, Any
 
+from dwell import messages
 from dwell._native import (
     ConfigError,
     DwellError,
@@ -171,6 +172,8 @@ def __dir__() -> list[str]:
     """The importable names, also those that are loaded at first use."""
     return sorted({*globals(), *__all__, *_MODULES})
 
+
+messages.install()
 
 # Importing gymnasium takes longer than most commands: the command line does without.
 if os.path.basename(sys.argv[0] if sys.argv else "") not in ("dwell", "dwell.exe", "-m"):

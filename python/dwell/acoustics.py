@@ -25,7 +25,7 @@ from dwell.heads import Head
 from dwell.house import House
 from dwell.listening import Receiver, Source, source_of
 from dwell.outside_rooms import warn_outside_rooms
-from dwell.world_settings import Laws, found
+from dwell.world_settings import Laws, file_of_laws_named, found
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -61,9 +61,10 @@ class AcousticScene:
         self.house = house if isinstance(house, House) else House.open(house)
         rows, values = found(laws)
         settings = plain_settings(checked("AcousticConfig", config))
-        self._native = _native.AcousticScene(
-            self.house.native, settings, plain_settings(rows), plain_settings(values)
-        )
+        with file_of_laws_named(laws):
+            self._native = _native.AcousticScene(
+                self.house.native, settings, plain_settings(rows), plain_settings(values)
+            )
         self._config = settings
         self._laws = {"laws": rows, "parameters": values}
 

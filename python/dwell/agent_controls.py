@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import checked_fields, quoted, refuse_masked, sequence_items
+from dwell.arguments import checked_fields, quoted, refuse_no_array, sequence_items
 from dwell.schemas import setting_checks
 
 
@@ -21,7 +21,7 @@ def controls_of(controls: object) -> NDArray[np.float32] | list[dict[str, Any]]:
     if isinstance(rows, list) and any(isinstance(row, Mapping) for row in rows):
         known = setting_checks("AgentControl")
         return [checked_fields(f"controls[{k}]", row, known) for k, row in enumerate(rows)]
-    refuse_masked("controls", rows)
+    refuse_no_array("controls", rows)
     try:
         table = np.asarray(rows)
         if table.dtype.kind not in "fiu" and table.size > 0:

@@ -72,10 +72,12 @@ def integer_in_range(name: str, value: object, *, low: int = 0, high: int = _MAX
 def finite_number(name: str, value: object) -> float:
     """A finite number as Python's own float; ``True``, ``"1"`` and complex numbers are none."""
     try:
-        # NumPy drops the imaginary part of what is complex. Nothing else is made an array: a range
-        # may have any length.
-        is_complex = hasattr(value, "__array__") and np.iscomplexobj(value)
-        if isinstance(value, bool | str | bytes) or is_complex:
+        # NumPy drops the imaginary part of what is complex, and reads text. Nothing else is made an
+        # array: a range may have any length.
+        is_other = hasattr(value, "__array__") and np.asarray(value).dtype.kind in "cSU"
+        # Python reads what has neither as text, if it is bytes of any kind.
+        is_number = hasattr(value, "__float__") or hasattr(value, "__index__")
+        if isinstance(value, bool) or is_other or not is_number:
             raise TypeError
         number = float(value)  # type: ignore[arg-type] # what this finds out
     except (TypeError, ValueError, OverflowError):
@@ -188,9 +190,29 @@ def _kept(value: object, depth: int, made: dict[int, Any]) -> Any:  # noqa: ANN4
     return value
 
 
+def refuse_no_array(name: str, values: object) -> None:
+    """Refuses what shall not become an array: what a mask hides a part of, and very long ranges.
+
+    A range holds none of its numbers, so that it costs nothing; an array of them does.
+    """
+    refuse_masked(name, values)
+    seen: set[int] = set()
+    left = [values]
+    while left:
+        part = left.pop()
+        if isinstance(part, range) and part[_MOST_LISTED:]:
+            raise ConfigError(
+                f"{name} has {part}; allowed are at most {_MOST_LISTED} numbers of a range"
+            )
+        # A list may hold itself.
+        if isinstance(part, list | tuple) and id(part) not in seen:
+            seen.add(id(part))
+            left += [row for row in part if isinstance(row, list | tuple | range)]
+
+
 def real_array(name: str, values: object, dtype: type[np.floating[Any]]) -> NDArray[Any]:
     """An array of real numbers, as C has them; NumPy alone would drop the imaginary part."""
-    refuse_masked(name, values)
+    refuse_no_array(name, values)
     try:
         found = np.asarray(values)
         if found.dtype.kind not in "fiu" and found.size > 0:

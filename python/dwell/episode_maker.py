@@ -8,7 +8,7 @@ import itertools
 import threading
 from collections import deque
 from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -27,6 +27,7 @@ from dwell.episodes import Episode, Header, task_of
 from dwell.house import House
 from dwell.house_list import HouseList
 from dwell.object_state_api import agent_states
+from dwell.workers import thread_count, thread_pool, worker_count
 
 if TYPE_CHECKING:
     from dwell.envs.native_batch import NativeBatch
@@ -129,27 +130,25 @@ class EpisodeMaker:
 
         Raises:
             ConfigError: There is no house in which the task can be played, or ``workers`` is no
-                whole number from 1.
+                whole number from 1 to 1024.
         """
-        workers = integer_in_range("workers", workers, low=1)
+        threads = thread_count(worker_count("workers", workers), len(self.header.places))
         left = iter(parts)
         # A few ahead, and no more: there may be very many.
         ahead: deque[tuple[range, Future[list[Episode]]]] = deque()
-        stop, calls = threading.Event(), _native.StopToken()
-        pool = ThreadPoolExecutor(workers, initializer=calls.watch_this_thread)
-        try:
-            while True:
-                for part in itertools.islice(left, 2 * workers - len(ahead)):
-                    ahead.append((part, pool.submit(self._some, part, workers, stop)))
-                if not ahead:
-                    return
-                part, future = ahead.popleft()
-                yield part, future.result()
-        finally:
-            # Nobody waits for the pieces that are being made: their threads end with the next step.
-            stop.set()
-            calls.stop()
-            pool.shutdown(cancel_futures=True)
+        stop = threading.Event()
+        with thread_pool(threads) as pool:
+            try:
+                while True:
+                    for part in itertools.islice(left, 2 * threads - len(ahead)):
+                        ahead.append((part, pool.submit(self._some, part, threads, stop)))
+                    if not ahead:
+                        return
+                    part, future = ahead.popleft()
+                    yield part, future.result()
+            finally:
+                # The pieces that are being made end with the next step.
+                stop.set()
 
     def _some(self, places: range, workers: int, stop: threading.Event) -> list[Episode]:
         envs: dict[str, NativeBatch] = {}

@@ -136,7 +136,10 @@ class Episode:
         return {name: value for name, value in row.items() if value is not None}
 
     def asked(self) -> dict[str, Any]:
-        """What an environment must find when it plays the episode; distances to the millimetre."""
+        """What an environment must find when it plays the episode.
+
+        Distances and the start are told to the millimetre, where it faces to a tenth of a degree.
+        """
         distance_m = self.start_distance_to_goal
         return {
             "instruction": self.instruction,
@@ -145,6 +148,9 @@ class Episode:
             "goal_objects": list(self.goal_objects),
             "goal_rooms": list(self.goal_rooms),
             "start_distance_to_goal": None if distance_m is None else round(distance_m, 3),
+            "start_position": [round(part, 3) + 0.0 for part in self.start_position],
+            # Zeros have no sign, and a whole turn is none.
+            "start_yaw_deg": round(self.start_yaw_deg % 360.0, 1) % 360.0,
             **(self.stated or {}),
         }
 

@@ -15,10 +15,11 @@ from concurrent.futures.process import BrokenProcessPool
 from typing import Any
 
 from dwell import ConfigError, UsageError
-from dwell.arguments import integer_in_range, quoted
+from dwell.arguments import quoted
 from dwell.episodes import Episode
 from dwell.evaluation import Evaluation
 from dwell.plugin_parts import refusing_exit
+from dwell.workers import worker_count
 
 #: Of a process that plays: what makes its evaluation, and that once it is made.
 _RECIPE: dict[str, Any] = {}
@@ -40,7 +41,7 @@ def played_rows(
         PolicyError: As :meth:`Evaluation.play`.
         UsageError: A process ended without a word.
     """
-    workers = min(integer_in_range("workers", workers, low=1), len(episodes))
+    workers = min(worker_count("workers", workers), len(episodes))
     if workers <= 1:
         yield from map(job.play, episodes)
         return

@@ -9,6 +9,7 @@ from __future__ import annotations
 
 import contextlib
 import errno
+import io
 import json
 import math
 import os
@@ -23,6 +24,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import _native
+from dwell.messages import printable
 
 #: Drafts for one name that may be in the making at once, and bytes that theirs take from it.
 _MAX_DRAFTS = 10_000
@@ -54,7 +56,9 @@ def open_file(path: _Name, most_bytes: int | None = None) -> BinaryIO:
     # Something may happen when a device is opened, so it is looked at before.
     _refuse_irregular(os.stat(name), name)
     flags = os.O_RDONLY | getattr(os, "O_NONBLOCK", 0) | getattr(os, "O_BINARY", 0)
-    file = os.fdopen(os.open(name, flags | getattr(os, "O_CLOEXEC", 0)), "rb")
+    opened = _NamedFile(os.open(name, flags | getattr(os, "O_CLOEXEC", 0)))
+    opened.path = name
+    file = io.BufferedReader(opened)
     try:
         facts = os.fstat(file.fileno())
         # Another thing may stand there by now.
@@ -67,6 +71,29 @@ def open_file(path: _Name, most_bytes: int | None = None) -> BinaryIO:
     return file
 
 
+class _NamedFile(io.FileIO):
+    """A file whose errors say which it is: of an open one the system says only what is wrong."""
+
+    path = ""
+
+    def readinto(self, buffer: Any) -> int:  # noqa: ANN401 - what holds bytes
+        """Reads into a buffer."""
+        try:
+            return super().readinto(buffer)
+        except OSError as error:
+            raise self._named(error) from None
+
+    def readall(self) -> bytes:
+        """Reads what is left."""
+        try:
+            return super().readall()
+        except OSError as error:
+            raise self._named(error) from None
+
+    def _named(self, error: OSError) -> OSError:
+        return OSError(error.errno, error.strerror, self.path)
+
+
 def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """The bytes of a regular file.
 
@@ -76,11 +103,7 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     """
     with open_file(path, most_bytes) as file:
         # A file that grows while it is read still ends at the cap.
-        try:
-            found = file.read(most_bytes + 1)
-        except OSError as error:
-            # The system says of an open file what is wrong, but not which it is.
-            raise OSError(error.errno, error.strerror, os.fspath(path)) from None
+        found = file.read(most_bytes + 1)
     if len(found) > most_bytes:
         _refuse_large(os.fspath(path), len(found), most_bytes)
     return found
@@ -126,6 +149,7 @@ def parse_json(
         ValueError: It is none, names a key twice in one object, is nested too deep, or holds more
             than is read; the message begins with ``at``.
     """
+    at = printable(at)
     depth, values = _native.json_size_bounds(text)
     if depth > _MAX_DEPTH:
         raise ValueError(f"{at}: nested {depth} deep; at most {_MAX_DEPTH} is read")
@@ -471,7 +495,7 @@ def _refuse_irregular(facts: os.stat_result, name: str) -> None:
 
 
 def _refuse_large(name: str, found: int, allowed: int) -> NoReturn:
-    raise ValueError(f"{name}: {found} bytes; at most {allowed} are read")
+    raise ValueError(f"{printable(name)}: {found} bytes; at most {allowed} are read")
 
 
 class _DuplicateKeyError(ValueError):

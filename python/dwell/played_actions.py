@@ -162,8 +162,10 @@ def _counted(name: str, written: object) -> Iterable[tuple[int, Any]]:
         for word in written.split():
             found = _RUN.fullmatch(word)
             if found is None:
-                told = f"found {quoted(word, 60)}; expected NUMBER or NUMBER*COUNT"
-                raise ConfigError(f"{name}: {told}")
+                raise ConfigError(
+                    f"{name}: found {quoted(word, 60)}; expected NUMBER or NUMBER*COUNT, each of 1 "
+                    "to 9 digits"
+                )
             yield int(found[2] or 1), int(found[1])
         return
     expected = "expected text, or a list of [times, action]"

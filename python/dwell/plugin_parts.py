@@ -14,6 +14,7 @@ from typing import Any, TypeVar
 
 from dwell import ConfigError, UsageError
 from dwell.arguments import mapping, quoted, refuse_unknown, text
+from dwell.messages import with_short_words
 
 _Part = TypeVar("_Part", bound="PluginPart")
 
@@ -91,7 +92,7 @@ def factory(
             f"{at} is {quoted(given)}; expected {expected}'module:Name' of a subclass"
         )
     if missing := sorted(getattr(called, "__abstractmethods__", ())):
-        raise ConfigError(f"{at}: {given!r} lacks the method {missing[0]}")
+        raise ConfigError(f"{at}: {quoted(given)} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
     if fields:
         _refuse_unknown_settings(f"settings of {at}", make, fields)
@@ -100,7 +101,7 @@ def factory(
         part = make(**fields)
         if not isinstance(part, kind):
             raise ConfigError(
-                f"{at}: {make!r} made {quoted(part)}; expected a dwell.{kind.__name__}"
+                f"{at}: {quoted(make)} made {quoted(part)}; expected a dwell.{kind.__name__}"
             )
         part.state = {}
         return part
@@ -135,8 +136,9 @@ def imported(at: str, given: str) -> object:
         return getattr(importlib.import_module(text(at, module)), name)
     except SystemExit as stop:
         raise ConfigError(
-            f"{at} is {given!r}, whose module ends the process: {_exit(stop)}"
+            f"{at} is {quoted(given)}, whose module ends the process: {_exit(stop)}"
         ) from stop
     # TypeError: a relative name, of which nobody knows whose relative it is.
     except (ImportError, AttributeError, ValueError, TypeError) as error:
-        raise ConfigError(f"{at} is {given!r}; expected 'module:Name': {error}") from None
+        why = with_short_words(str(error))
+        raise ConfigError(f"{at} is {quoted(given)}; expected 'module:Name': {why}") from None

@@ -10,7 +10,15 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
-from dwell import ConfigError, DwellError, MeasuredDataError, UsageError, _native, arguments
+from dwell import (
+    ConfigError,
+    DwellError,
+    MeasuredDataError,
+    SceneError,
+    UsageError,
+    _native,
+    arguments,
+)
 from dwell.arguments import (
     boolean,
     from_json,
@@ -371,7 +379,10 @@ class Replay:
         if renderer is not None:
             config["world"] = {**config.get("world", {}), "renderer": renderer}
         opened = House.open(self.house) if house is None else instance_of("house", house, House)
-        return NativeBatch([opened], to_json(config), None, custom=custom)
+        try:
+            return NativeBatch([opened], to_json(config), None, custom=custom)
+        except (ConfigError, SceneError) as error:
+            raise type(error)(f"config: {error}") from error
 
     @contextmanager
     def _named(self, place: str = "") -> Iterator[None]:

@@ -35,7 +35,7 @@ from dwell.navigation import Navigation, Walker, walker_settings
 from dwell.outside_rooms import warn_outside_rooms
 from dwell.person_api import PersonApi
 from dwell.sound_api import SoundApi
-from dwell.world_settings import Laws, Randomize, with_head, world_settings
+from dwell.world_settings import Laws, Randomize, file_of_laws_named, with_head, world_settings
 
 if TYPE_CHECKING:
     from typing_extensions import Unpack
@@ -111,7 +111,8 @@ class World(ActionApi, BodyApi, GuideApi, PersonApi, SoundApi):
             **world_settings(laws, parameters, further, randomize),
         }
         self._config, self._seed = to_json(settings), integer_in_range("seed", seed)
-        self._native = _native.World(self.house.native, self._config, self._seed)
+        with file_of_laws_named(laws):
+            self._native = _native.World(self.house.native, self._config, self._seed)
         for agent in self.agents():
             warn_outside_rooms(self.house, "an agent", agent["position"])
 

@@ -2,15 +2,16 @@
 
 from __future__ import annotations
 
+import contextlib
 import difflib
 import functools
 import os
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from pathlib import Path
 from typing import Any
 
 from dwell import _native
-from dwell._native import ConfigError
+from dwell._native import ConfigError, SceneError
 from dwell.arguments import (
     checked_fields,
     finite_number,
@@ -58,10 +59,23 @@ def _read(file: str) -> Any:  # noqa: ANN401 - any JSON value
         raise ConfigError(f"laws: {error}") from error
 
 
-def _is_path(laws: str) -> bool:
-    """Returns whether text means a file rather than a law."""
+def _is_file(laws: Laws) -> bool:
+    """Returns whether laws stand in a file: a path, or text that is no law's name."""
+    if not isinstance(laws, str):
+        return isinstance(laws, os.PathLike)
     is_like_one = laws.endswith(".json") or os.path.basename(laws) != laws
     return laws not in _laws() and (is_like_one or (laws != "" and Path(laws).exists()))
+
+
+@contextlib.contextmanager
+def file_of_laws_named(laws: Laws) -> Iterator[None]:
+    """Lets what the engines refuse of parameters that a file holds begin with its name."""
+    try:
+        yield
+    except (ConfigError, SceneError) as error:
+        if not _is_file(laws) or "parameter" not in str(error):
+            raise
+        raise type(error)(f"laws: {path('laws', laws)}: {error}") from None
 
 
 def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
@@ -72,7 +86,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
         OSError: It is the path of a file that the system refuses to read.
     """
     at = "laws"
-    if isinstance(laws, os.PathLike) or (isinstance(laws, str) and _is_path(laws)):
+    if _is_file(laws):
         laws = path(at, laws)
         at = f"laws: {laws}"
         laws = _read(laws)
@@ -95,7 +109,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
             _row(f"{at}.{name:.200}", {"id": name, **({"params": params} if params else {})})
             for name, params in by_name.items()
         ]
-        return rows, _values("parameters", parameters)
+        return rows, _values(f"{at}: parameters", parameters)
     if isinstance(laws, str | Mapping):
         laws = [laws]
     if (
@@ -107,7 +121,7 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     if len(laws) > _MAX_LAWS:
         raise ConfigError(f"{at}: found {len(laws)} laws; allowed are at most {_MAX_LAWS}")
     rows = [_row(f"{at}[{k}]", law) for k, law in enumerate(laws)]
-    return rows, _values("parameters", parameters)
+    return rows, _values(f"{at}: parameters", parameters)
 
 
 def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
@@ -205,7 +219,9 @@ def _has(law: Mapping[str, Any]) -> str:
 def _values(name: str, parameters: object) -> dict[str, float]:
     """Values by address."""
     values = mapping(name, parameters, "values by address")
-    return {address: finite_number(address, value) for address, value in values.items()}
+    return {
+        address: finite_number(f"{name}: {address}", value) for address, value in values.items()
+    }
 
 
 def _target(name: str, value: object) -> str | None:

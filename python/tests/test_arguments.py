@@ -2,10 +2,13 @@
 
 from __future__ import annotations
 
+import array
 import itertools
 import json
 import math
 from collections.abc import Callable
+from decimal import Decimal
+from fractions import Fraction
 from pathlib import Path
 from typing import Any
 
@@ -13,7 +16,7 @@ import numpy as np
 import pytest
 
 import dwell
-from dwell.arguments import kept
+from dwell.arguments import finite_number, kept
 from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.localization import Settings
 
@@ -298,3 +301,69 @@ class OfBytes:
 def test_paths_of_bytes_are_told(name: str, make: Callable[[object], object]) -> None:
     with pytest.raises(dwell.ConfigError, match=f"{name} is b'x'; expected text"):
         make(OfBytes())
+
+
+@pytest.mark.parametrize(
+    "value",
+    [
+        bytearray(b"1"),
+        memoryview(b"1"),
+        array.array("B", b"1"),
+        np.array("1"),
+        np.bytes_(b"1"),
+        np.complex64(1),
+    ],
+    ids=lambda value: type(value).__name__,
+)
+def test_bytes_and_text_of_any_kind_are_no_numbers(value: Any) -> None:  # noqa: ANN401 - odd
+    with pytest.raises(dwell.ConfigError, match=r"gain is .*; expected a number"):
+        finite_number("gain", value)
+
+
+@pytest.mark.parametrize(
+    "value", [1, 1.0, np.float32(1), np.array(1), np.array([1.0])[0], Fraction(1), Decimal(1)]
+)
+def test_what_counts_as_one_is_a_number(value: Any) -> None:  # noqa: ANN401 - odd
+    assert finite_number("gain", value) == 1.0
+
+
+@pytest.mark.parametrize("count", [5 * 10**7, 10**18, 10**30])
+def test_a_range_that_is_too_long_is_refused_before_it_is_an_array(count: int) -> None:
+    long = range(count)
+    world = dwell.World("builtin:studio")
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"], action_mode="velocity")
+    envs = DwellVectorEnv(1, "Free", houses="builtin:studio", sensors=["gps"])
+    env.reset(seed=1)
+    envs.reset(seed=1)
+    for call in (
+        lambda: world.step([long]),
+        lambda: world.step([[long] * 4]),
+        lambda: env.step(long),
+        lambda: envs.step([long]),
+        lambda: dwell.Head.measured(long, [], 44_100),
+    ):
+        with pytest.raises(dwell.ConfigError, match="at most 1000000 numbers of a range"):
+            call()
+    holds_itself: list[Any] = [1.0]
+    holds_itself.append(holds_itself)
+    with pytest.raises(dwell.ConfigError, match="controls"):
+        world.step(holds_itself)
+
+
+@pytest.mark.parametrize(
+    ("parameters", "told"),
+    [
+        ({"law/drag/c_d": -4}, r'parameter address "law/drag/c_d": -4 is out of range'),
+        ({"world/nothing": 1}, "nothing"),
+        ({"world/gravity_m_s2": "x"}, "parameters: world/gravity_m_s2 is 'x'; expected a number"),
+    ],
+)
+def test_parameters_of_a_file_are_refused_with_its_name(
+    parameters: dict[str, Any], told: str, tmp_path: Path
+) -> None:
+    file = tmp_path / "found.json"
+    laws = [{"id": "drag", "version": 1, "params": {"c_d": 1}}]
+    file.write_text(json.dumps({"laws": laws, "parameters": parameters}))
+    for make in (dwell.World, dwell.AcousticScene):
+        with pytest.raises(dwell.DwellError, match=f"^laws: {file}: .*{told}"):
+            make(HOUSE, laws=file)

@@ -386,9 +386,28 @@ def test_what_contradicts_a_file_is_refused(made: Path, tmp_path: Path) -> None:
         paid.reset(options={"episode_id": "builtin:studio#1"})
 
 
+def test_a_house_that_cannot_be_opened_is_told_with_file_and_line(
+    made: Path, tmp_path: Path
+) -> None:
+    lines = rows(made)
+    for line in lines[2:4]:
+        line |= {"scene_id": "no.glb", "episode_id": f"no.glb#{line['seed']}"}
+    path = put(tmp_path / "other.jsonl", lines)
+    env = DwellEnv("PointNav", episodes=path, sensors=["gps"])
+    told = f"^{path} line 3: scene_id: no.glb: "
+    with pytest.raises(dwell.HouseNotFoundError, match=told):
+        env.reset(options={"episode_id": lines[3]["episode_id"]})
+
+
 @pytest.mark.parametrize(
     ("field", "value"),
-    [("instruction", "Go away."), ("goal_kind", "room"), ("start_distance_to_goal", 2.0)],
+    [
+        ("instruction", "Go away."),
+        ("goal_kind", "room"),
+        ("start_distance_to_goal", 2.0),
+        ("start_position", [1.5, 0.0, 1.5]),
+        ("start_yaw_deg", 12.5),
+    ],
 )
 def test_an_episode_that_is_not_as_the_file_states_is_refused(
     field: str, value: object, made: Path, tmp_path: Path

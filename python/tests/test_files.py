@@ -453,7 +453,7 @@ def test_as_many_seeds_as_one_likes_are_drawn_one_by_one(
     from dwell.cli import generate
 
     def stop(args: object, seed: int) -> dict[str, object]:
-        if seed == 300:
+        if seed >= 300:
             raise KeyboardInterrupt
         return {"seed": seed}
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import functools
 import gc
 import json
+import re
 import shutil
 import subprocess
 import sys
@@ -251,7 +252,8 @@ def test_a_house_that_could_not_be_written_is_tried_again(
     refused = generate(*three, "--out", out)
     assert refused.returncode == 1
     assert "something else stands there already" in refused.stderr
-    assert "1 of 3 are kept; run again" in refused.stderr
+    # Of the last one, which another thread makes, nobody knows how far it came.
+    assert re.search("[12] of 3 are kept; run again", refused.stderr)
     assert not manifest.exists()
     shutil.rmtree(in_the_way)
     assert generate(*three, "--out", out).returncode == 0

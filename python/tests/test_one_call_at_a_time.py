@@ -5,6 +5,7 @@ from __future__ import annotations
 import threading
 from typing import Any
 
+import gymnasium
 import numpy as np
 import pytest
 
@@ -22,6 +23,16 @@ class Nesting(dwell.Task):
         for call in NESTED:
             call()
         return verdict
+
+
+class Looking(dwell.Sensor):
+    name = "looking"
+    space = gymnasium.spaces.Discrete(2)
+
+    def observe(self, world: dwell.World, rng: np.random.Generator) -> int:
+        for call in NESTED:
+            call()
+        return 0
 
 
 @pytest.fixture(autouse=True)
@@ -44,6 +55,19 @@ def test_a_step_within_a_step_is_told_as_one() -> None:
             env.step(1)
         env.reset(seed=1)
     env.step(1)
+
+
+def test_a_step_of_a_sensor_that_observes_is_told_as_one() -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=[Looking])
+    envs = DwellVectorEnv(1, "Free", houses="builtin:studio", sensors=[Looking])
+    for one, action in ((env, 1), (envs, np.array([1]))):
+        one.reset(seed=1)
+        NESTED[:] = [lambda one=one, action=action: one.step(action)]
+        with pytest.raises(dwell.UsageError, match=r"another call \(step\) .* is running"):
+            one.step(action)
+        with pytest.raises(dwell.UsageError, match=r"another call \(reset\) .* is running"):
+            one.reset(seed=1)
+        NESTED.clear()
 
 
 def test_a_step_of_a_vector_within_a_step_is_told_as_one() -> None:

@@ -289,8 +289,14 @@ def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
             dwell.Replay.read(path)
     faults = [
         ("house", "nowhere.glb", "nowhere.glb"),
-        ("config", {"task": "Nothing"}, "Nothing"),
-        ("config", {"world": {"sound_rate_hz": -1}}, "world.sound_rate_hz: found integer `-1`"),
+        ("config", {"task": "Nothing"}, "config: no task"),
+        ("config", {"world": {"laws": [{"id": "drag"}]}}, "config: "),
+        ("config", {"nothing": 1}, "config: unknown field `nothing`"),
+        (
+            "config",
+            {"world": {"sound_rate_hz": -1}},
+            "config: world.sound_rate_hz: found integer `-1`",
+        ),
         ("parts", ["Shouting"], "Shouting"),
     ]
     for field, value, said in faults:

@@ -8,6 +8,9 @@ import importlib
 import os
 import sys
 from collections.abc import Sequence
+from typing import NoReturn
+
+from dwell.messages import with_short_words
 
 #: Command and what it does; the file of that name has ``configure(parser)`` and ``run(args)``.
 COMMANDS = {
@@ -33,9 +36,17 @@ COMMANDS = {
 }
 
 
+class _Parser(argparse.ArgumentParser):
+    """A parser, also of the commands below, whose errors quote the beginning of long words."""
+
+    def error(self, message: str) -> NoReturn:
+        """Says what is wrong with the arguments, and leaves."""
+        super().error(with_short_words(message))
+
+
 def parser(chosen: str | None = None) -> argparse.ArgumentParser:
     """The parser of all commands; only the chosen one's file is imported and adds its options."""
-    top = argparse.ArgumentParser(
+    top = _Parser(
         prog="dwell", description="A household that agents see, touch, hear and talk about."
     )
     top.add_argument("--version", action="store_true", help="print the version and leave")

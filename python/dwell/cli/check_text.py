@@ -10,7 +10,7 @@ from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
 from dwell.arguments import quoted
-from dwell.cli.common import path, print_json
+from dwell.cli.common import decimal, path, print_json
 
 if TYPE_CHECKING:
     from pathlib import Path
@@ -128,7 +128,7 @@ def _viewer(world: World, view: str) -> dict[str, Any]:
     parts = view.split(",")
     expected = "expected the number of a room, or X,Y,Z,YAW[,PITCH]"
     try:
-        numbers = [float(part) for part in parts]
+        numbers = [decimal(part) for part in parts]
     except ValueError:
         raise ValueError(f"--view: {expected}, found {quoted(view)}") from None
     if len(numbers) in (4, 5):

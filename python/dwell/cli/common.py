@@ -14,10 +14,10 @@ from collections.abc import Collection, Iterator, Sequence
 from pathlib import Path
 from typing import Any, TextIO
 
+from dwell.camera import MAX_PIXELS
 from dwell.files import parse_json
-
-#: A name of which an error shows the beginning alone.
-_LONG_WORD = re.compile(r"(\S{200})\S{100,}")
+from dwell.messages import printable, with_short_words
+from dwell.workers import MAX_WORKERS
 
 
 def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
@@ -25,10 +25,21 @@ def print_json(value: Any) -> None:  # noqa: ANN401 - any JSON value
     sys.stdout.write(json.dumps(value, ensure_ascii=False, allow_nan=False) + "\n")
 
 
+def decimal(text: str) -> float:
+    """The number that a text says.
+
+    Raises:
+        ValueError: It is none, or written as only Python reads it: ``1_0``, or in other digits.
+    """
+    if "_" in text or not text.isascii():
+        raise ValueError("no number in ASCII digits")
+    return float(text)
+
+
 def point(text: str) -> tuple[float, float, float]:
     """Reads ``X,Y,Z`` in metres."""
     try:
-        x, y, z = (float(part) for part in text.split(","))
+        x, y, z = (decimal(part) for part in text.split(","))
     except ValueError:
         raise argparse.ArgumentTypeError(f"expected X,Y,Z in metres, found {text!r}") from None
     if not all(map(math.isfinite, (x, y, z))):
@@ -39,7 +50,7 @@ def point(text: str) -> tuple[float, float, float]:
 def number(text: str) -> float:
     """Reads a finite number."""
     try:
-        value = float(text)
+        value = decimal(text)
     except ValueError:
         value = math.nan
     if not math.isfinite(value):
@@ -60,6 +71,16 @@ def count(text: str, low: int = 0, high: int = sys.maxsize) -> int:
 def count_from_1(text: str) -> int:
     """Reads a whole number of which there is at least one."""
     return count(text, low=1)
+
+
+def image_edge(text: str) -> int:
+    """Reads a width or a height, pixels."""
+    return count(text, low=1, high=MAX_PIXELS)
+
+
+def workers(text: str) -> int:
+    """Reads how many threads or processes are asked for."""
+    return count(text, low=1, high=MAX_WORKERS)
 
 
 def sound_rate(text: str) -> int:
@@ -178,15 +199,6 @@ def join_negative_points(arguments: Sequence[str]) -> list[str]:
     return joined
 
 
-#: What commands a terminal or turns the direction of writing, and what is no text at all.
-_COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
-
-
-def printable(text: str) -> str:
-    """Text in which names of strangers command no terminal: they are escaped as in JSON."""
-    return _COMMANDS.sub(lambda found: f"\\u{ord(found[0]):04x}", text)
-
-
 def _as_json(error: UnicodeError) -> tuple[str, int]:
     """Characters that an encoding lacks, as JSON escapes them."""
     if not isinstance(error, UnicodeEncodeError):
@@ -251,7 +263,7 @@ def sentence(error: BaseException) -> str:
     if isinstance(error, OSError) and error.strerror is not None:
         where = "" if error.filename is None else f"{os.fsdecode(error.filename)}: "
         said = f"{where}{error.strerror}"
-    return _LONG_WORD.sub(lambda word: f"{word[1]}...({len(word[0])} characters)", said)
+    return with_short_words(said)
 
 
 class ProgressBar:

@@ -19,6 +19,7 @@ from dwell.cli.common import (
     refuse_unused,
     settings_of,
     shard,
+    workers,
 )
 from dwell.cli.habitat import add_habitat, convert
 from dwell.cli.job_journal import Journal, contents_of, is_of_files
@@ -71,7 +72,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
     parser.add_argument(
-        "--workers", type=count_from_1, help="threads (default: as many as processors)"
+        "--workers", type=workers, help="threads, at most 1024 (default: one a processor)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
     add_habitat(parser)
@@ -171,8 +172,7 @@ def _make(args: argparse.Namespace, maker: Any) -> int:  # noqa: ANN401 - an Epi
         if _HEADER not in journal.done:
             journal.add(_HEADER, [header])
         left = (part for part in maker.parts() if _item(part) not in journal.done)
-        workers = args.workers or os.cpu_count() or 1
-        for part, episodes in maker.in_parts(left, workers=workers):
+        for part, episodes in maker.in_parts(left, workers=args.workers or os.cpu_count() or 1):
             journal.add(_item(part), [one.as_dict() for one in episodes], of(_item(part)))
             made += len(episodes)
             bar((part.stop - maker.header.places.start) / whole, episodes[-1].scene_id)

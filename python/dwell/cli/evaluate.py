@@ -18,6 +18,7 @@ from dwell.cli.common import (
     path,
     print_json,
     refuse_unused,
+    workers,
 )
 from dwell.cli.episodes import add_task_settings, task_settings
 from dwell.cli.job_journal import Journal
@@ -64,7 +65,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("--max-steps", type=count_from_1, help="default: the task's")
     parser.add_argument(
         "--workers",
-        type=count_from_1,
+        type=workers,
         default=1,
         help="processes that play, each with a policy of its own (default: this one)",
     )

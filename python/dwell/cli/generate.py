@@ -6,22 +6,22 @@ import argparse
 import contextlib
 import itertools
 import json
-import os
 import re
 import sys
 import time
 import zlib
 from collections import Counter, deque
 from collections.abc import Iterator
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
 from dwell import _native
-from dwell.arguments import integer_in_range
-from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
+from dwell.arguments import integer_in_range, text
+from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard, workers
 from dwell.cli.job_journal import VERSION, Journal, claim, refuse_other_version
 from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read_json
+from dwell.workers import thread_count, thread_pool
 
 _FORMS = ("dwell", "suncg", "glb")
 #: Letters of the files of a room of SUNCG, and what says that there is none.
@@ -56,7 +56,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
         "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
     parser.add_argument(
-        "--workers", type=count_from_1, help="threads (default: as many as processors)"
+        "--workers", type=workers, help="threads, at most 1024 (default: one a processor)"
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
 
@@ -122,35 +122,48 @@ def _make(args: argparse.Namespace, manifest: Path, job: dict[str, Any]) -> int:
     # Seeds are many, and drawn one by one.
     left = (seed for seed in _job_seeds(args) if str(seed) not in journal.done)
     made = 0
-    workers = args.workers or os.cpu_count() or 1
+    threads = thread_count(args.workers, all_seeds - len(journal.done))
     bar = ProgressBar()
-    stop = _native.StopToken()
-    pool = ThreadPoolExecutor(workers, initializer=stop.watch_this_thread)
     # A few houses ahead, in order: the manifest is the same for any number of workers.
     ahead: deque[tuple[int, Future[dict[str, Any]]]] = deque()
+    is_added = True
     try:
-        while True:
-            for seed in itertools.islice(left, 2 * workers - len(ahead)):
-                ahead.append((seed, pool.submit(_house, args, seed)))
-            if not ahead:
-                break
-            seed, future = ahead.popleft()
-            row = future.result()
-            journal.add(str(seed), [row])
-            made += "error" not in row
-            bar(len(journal.done) / all_seeds, f"seed {seed}")
+        with thread_pool(threads) as pool:
+            while True:
+                for seed in itertools.islice(left, 2 * threads - len(ahead)):
+                    ahead.append((seed, pool.submit(_house, args, seed)))
+                if not ahead:
+                    break
+                seed, future = ahead[0]
+                row = future.result()
+                is_added = False
+                ahead.popleft()
+                journal.add(str(seed), [row])
+                is_added = True
+                made += "error" not in row
+                bar(len(journal.done) / all_seeds, f"seed {seed}")
         House.finish_folder(args.out, args.format)
-        journal.finish()
+        journal.finish(order=lambda lines: _in_order(args, lines))
     except BaseException:
+        # Those that stand in the folder by now.
+        for seed, future in ahead if is_added else ():
+            if future.done() and not future.cancelled() and future.exception() is None:
+                journal.add(str(seed), [future.result()])
         journal.close()
         kept = f"{len(journal.done)} of {all_seeds} are kept; run again"
         print(f"dwell generate: {kept}", file=sys.stderr)
         raise
-    finally:
-        # Nobody waits for the houses that are being made.
-        stop.stop()
-        pool.shutdown(cancel_futures=True)
     return made
+
+
+def _in_order(args: argparse.Namespace, lines: Iterator[bytes]) -> Iterator[bytes]:
+    """The rows of all seeds of the job, ascending: after a stop some were written early."""
+    early: dict[int, bytes] = {}
+    for seed in _job_seeds(args):
+        while seed not in early:
+            line = next(lines)
+            early[json.loads(line)["seed"]] = line
+        yield early.pop(seed)
 
 
 def _job_seeds(args: argparse.Namespace) -> Iterator[int]:
@@ -192,7 +205,7 @@ def _regenerate_missing(args: argparse.Namespace, manifest: Path) -> int:
         if "error" not in row and not _is_there(args, row, models)
     )
     made = 0
-    with ThreadPoolExecutor(args.workers or os.cpu_count() or 1) as pool:
+    with thread_pool(thread_count(args.workers, args.count)) as pool:
         while some := list(itertools.islice(missing, 64)):
             for row, new in zip(
                 some, pool.map(lambda row: _regenerate_house(args, row), some), strict=True
@@ -382,12 +395,12 @@ def _seeds(first: int, split: str) -> Iterator[int]:
     return (seed for seed in itertools.count(first) if split in ("all", split_of_seed(seed)))
 
 
-def _field(text: str) -> str:
+def _field(given: str) -> str:
     """A field of the spec as it stands in a HOUSE string."""
-    if not re.fullmatch(r"[a-z0-9_]+=[^&]*", text):
-        raise ValueError(f"--spec: expected FIELD=VALUE, found {text!r}")
-    if text.startswith("split="):
+    if not re.fullmatch(r"[a-z0-9_]+=[^&]*", text("--spec", given)):
+        raise ValueError(f"--spec: expected FIELD=VALUE, found {given!r}")
+    if given.startswith("split="):
         raise ValueError(
-            f"--spec {text}: each seed has the looks of its own split; --split chooses seeds"
+            f"--spec {given}: each seed has the looks of its own split; --split chooses seeds"
         )
-    return text
+    return given

@@ -297,11 +297,17 @@ class Journal:
                     f"{self._path}, so that all is done anew, or give another --out"
                 )
 
-    def finish(self, whole: Callable[[Iterator[Any]], str] | None = None) -> None:
+    def finish(
+        self,
+        whole: Callable[[Iterator[Any]], str] | None = None,
+        *,
+        order: Callable[[Iterator[bytes]], Iterator[bytes]] = lambda lines: lines,
+    ) -> None:
         """Writes the rows of all items into the result, and forgets the journal.
 
         Args:
             whole: Makes the text of the result of the rows; by default it is a row a line.
+            order: Puts these lines in order; by default they stand as they came.
         """
         # Locked to the end: another process of this job finds the result, or this journal.
         with self._file:
@@ -309,7 +315,7 @@ class Journal:
             with atomic_write(self._out) as path, path.open("wb") as result:
                 if whole is not None:
                     result.write(whole(map(json.loads, self._rows())).encode())
-                for line in self._rows() if whole is None else ():
+                for line in order(self._rows()) if whole is None else ():
                     result.write(line)
             os.unlink(self._path)
 

@@ -13,6 +13,7 @@ from dwell.cli.common import (
     add_back_end,
     back_end,
     count,
+    image_edge,
     number,
     path,
     point,
@@ -53,8 +54,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help=f"some of {','.join(_SENSORS)}; default rgb; beside --map, --dollhouse and --sheet "
         "none, unless there is --at",
     )
-    parser.add_argument("--width", type=count, help="default 640; --map and --dollhouse 1200")
-    parser.add_argument("--height", type=count, default=480)
+    parser.add_argument("--width", type=image_edge, help="default 640; --map and --dollhouse 1200")
+    parser.add_argument("--height", type=image_edge, default=480)
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument(
         "--projection",

@@ -13,6 +13,7 @@ from dwell.cli.common import (
     add_back_end,
     back_end,
     count,
+    image_edge,
     number,
     path,
     print_json,
@@ -43,8 +44,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     )
     parser.add_argument("--agent", metavar="NAME", help="of several whose; default the first")
     parser.add_argument("--every", type=count, default=1, help="take a picture every so many steps")
-    parser.add_argument("--width", type=count, default=320)
-    parser.add_argument("--height", type=count, default=240)
+    parser.add_argument("--width", type=image_edge, default=320)
+    parser.add_argument("--height", type=image_edge, default=240)
     parser.add_argument("--fov-deg", type=number, default=90.0, help="horizontal field of view")
     parser.add_argument("--preset", choices=PRESETS, default="lit")
     parser.add_argument("--classes", choices=CLASSES, default="coarse", help="those of semantic")

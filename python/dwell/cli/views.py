@@ -7,7 +7,16 @@ import sys
 import time
 from typing import Any
 
-from dwell.cli.common import ProgressBar, count, count_from_1, number, path, print_json, shard
+from dwell.cli.common import (
+    ProgressBar,
+    count,
+    count_from_1,
+    number,
+    path,
+    print_json,
+    shard,
+    workers,
+)
 from dwell.cli.job_journal import claim, refuse_other
 
 #: Houses that were skipped and are told of on standard error.
@@ -36,9 +45,7 @@ def configure(parser: argparse.ArgumentParser) -> None:
     make.add_argument(
         "--shard", type=shard, default=(0, 1), metavar="K/N", help="the K-th of N parts, from 0"
     )
-    make.add_argument(
-        "--threads", type=count_from_1, default=1, help="houses at a time (default 1)"
-    )
+    make.add_argument("--threads", type=workers, default=1, help="houses at a time (default 1)")
     make.add_argument("--json", action="store_true", help="one JSON object on standard output")
     clip = steps.add_parser("clip", help="a walk with pictures and sound")
     clip.add_argument("house", metavar="HOUSE")

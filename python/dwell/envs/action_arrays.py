@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import abbreviated_list, mapping, quoted, refuse_masked
+from dwell.arguments import abbreviated_list, mapping, quoted, refuse_no_array
 
 
 def stacked_fields(at: str, action: object, keys: Sequence[str]) -> dict[str, Any]:
@@ -35,7 +35,7 @@ def plain_array(at: str, given: object, expected: str) -> NDArray[Any]:
     Raises:
         ConfigError: They are none; the message says what was ``expected``.
     """
-    refuse_masked(at, given)
+    refuse_no_array(at, given)
     try:
         return np.asarray(given)
     except (ValueError, np.ma.MaskError):

@@ -35,10 +35,17 @@ class EpisodeCalls:
     @contextlib.contextmanager
     def _playing(self, call: str) -> Iterator[None]:
         """There is no episode to go on with until ``call`` has come to its end."""
-        self._stopped, self._call = True, call
-        try:
+        self._stopped = True
+        with self._calling(call):
             yield
             self._stopped = False
+
+    @contextlib.contextmanager
+    def _calling(self, call: str) -> Iterator[None]:
+        """Other calls are refused until ``call`` has come to its end."""
+        self._call = call
+        try:
+            yield
         finally:
             self._call = None
 

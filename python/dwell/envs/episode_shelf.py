@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from dwell import ConfigError, MeasuredDataError, _native, arguments
+from dwell import ConfigError, HouseError, MeasuredDataError, _native, arguments
 from dwell.arguments import (
     mapping,
     plain_settings,
@@ -25,6 +25,7 @@ from dwell.envs.python_tasks import TaskChoice
 from dwell.episodes import Episode, Header, read, task_of
 from dwell.house import House
 from dwell.house_list import HouseList
+from dwell.object_state_api import agent_states
 
 #: What the settings of a task say about steps, not about which episodes there are: who plays the
 #: episodes of a file may choose them anew.
@@ -158,6 +159,10 @@ class EpisodeIndex:
             pass
         return {}
 
+    def first_in(self, house: int) -> int:
+        """The first episode in a house, by the place of that in :attr:`names`."""
+        return int(np.flatnonzero(self._houses == house)[0])
+
     def place(self, number: int) -> str:
         """File and line of an episode, counted from 0."""
         which = int(np.searchsorted(self._ends, number, "right"))
@@ -190,6 +195,22 @@ class EpisodeShelf(HouseCache):
                     )
                 self._house_of[number] = self.names.index(name)
         self._number_of = {house: number for number, house in enumerate(self._house_of)}
+
+    def open(self, index: int, *, threads: int | None = None) -> House:
+        """House ``index`` modulo their number, opened by so many threads.
+
+        Raises:
+            HouseError: There is none of that name; the message begins with file, line and field of
+                an episode in it.
+        """
+        try:
+            return super().open(index, threads=threads)
+        except HouseError as error:
+            number = self._number_of.get(index % len(self.names))
+            if number is None:
+                raise
+            at = self._index.place(self._index.first_in(number))
+            raise type(error)(f"{at}: scene_id: {error}") from error
 
     def draw(self, stream: np.random.Generator) -> tuple[int, int]:
         """House and seed of one of the episodes."""
@@ -267,12 +288,13 @@ class EpisodeShelf(HouseCache):
         if number is None:
             return
         found = batch.episode_goal(env)
+        agent = agent_states(batch.agent_states(env))[batch.agents()[0]]
         played = Episode(
             episode_id="",
             scene_id="",
             seed=seed,
-            start_position=(0.0, 0.0, 0.0),
-            start_yaw_deg=0.0,
+            start_position=agent["position"],
+            start_yaw_deg=agent["yaw_deg"],
             instruction=batch.instruction(env),
             **(self._index.stated(number) or {}),
             **found,

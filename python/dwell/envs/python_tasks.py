@@ -22,7 +22,7 @@ from dwell.arguments import (
     from_json,
     mapping,
     quoted,
-    refuse_masked,
+    refuse_no_array,
     sequence_items,
     text,
     to_json,
@@ -440,7 +440,7 @@ def _element(at: str, space: spaces.Space[Any], value: object) -> Any:  # noqa: 
     form = ""
     if not isinstance(space, spaces.Text):
         try:
-            refuse_masked(f"{at}: what it observed", value)
+            refuse_no_array(f"{at}: what it observed", value)
             given = np.asarray(value)
             form = (
                 f"; found {given.dtype} of shape {given.shape}"

@@ -7,9 +7,10 @@ from typing import TYPE_CHECKING, NoReturn
 import gymnasium
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import integer_in_range, refuse_unknown, text
+from dwell.arguments import integer_in_range, quoted, refuse_unknown, text
 from dwell.envs.config import EnvSettings
 from dwell.envs.python_tasks import TaskChoice
+from dwell.messages import with_short_words
 from dwell.plugin_parts import factory
 from dwell.tasks import Task
 
@@ -75,7 +76,7 @@ def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]
     made = factory("task", task, Task, settings.get("task_settings"))()
     steps = integer_in_range(f"{type(made).__name__}.max_steps", made.max_steps, low=1)
     if text("env_id", env_id) in gymnasium.registry:
-        raise ConfigError(f"env_id is {env_id!r}, which is registered already")
+        raise ConfigError(f"env_id is {quoted(env_id)}, which is registered already")
     try:
         gymnasium.register(
             env_id,
@@ -85,4 +86,4 @@ def register_task(env_id: str, task: TaskChoice, **settings: Unpack[EnvSettings]
             kwargs={"task": task, **settings},
         )
     except gymnasium.error.Error as error:
-        raise ConfigError(f"env_id is {env_id!r}: {error}") from None
+        raise ConfigError(f"env_id is {quoted(env_id)}: {with_short_words(str(error))}") from None

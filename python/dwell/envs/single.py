@@ -322,7 +322,8 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             answer, further = self._runner.step(taken)
         info = step_info(answer, self._measures)
         self._ended = terminated = bool(answer["terminated"][0])
-        observation = self._observation()
+        with self._calling("step"):
+            observation = self._observation()
         info["audio_clipped"] = self._runner.batch.clipped()[0]
         return (
             observation,

@@ -9,7 +9,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import integer_in_range, mapping, quoted, refuse_masked, sequence_items
+from dwell.arguments import integer_in_range, mapping, quoted, refuse_no_array, sequence_items
 
 
 @dataclasses.dataclass(frozen=True)
@@ -48,7 +48,7 @@ class VectorReset:
 
 def _mask(mask: object, num_envs: int) -> NDArray[np.bool_]:
     """The environments to reset, as C has them; all of them by default."""
-    refuse_masked("reset_mask", mask)
+    refuse_no_array("reset_mask", mask)
     if mask is None:
         return np.ones(num_envs, np.bool_)
     try:

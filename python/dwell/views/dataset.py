@@ -11,7 +11,7 @@ import shutil
 import zlib
 from collections import deque
 from collections.abc import Callable, Iterator, Sequence
-from concurrent.futures import Future, ThreadPoolExecutor
+from concurrent.futures import Future
 from pathlib import Path
 from typing import Any
 
@@ -25,6 +25,7 @@ from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
 from dwell.views.questions import ask
 from dwell.views.record import HouseNames, ViewRecord, view_record
+from dwell.workers import thread_count, thread_pool, worker_count
 
 __all__ = ["LIGHTS", "ViewSettings", "house_records", "make", "records", "split_of"]
 
@@ -144,7 +145,7 @@ def make(
         out: Its folder.
         settings: What is made.
         shard: Which of how many parts, from 0.
-        threads: Houses at a time.
+        threads: Houses at a time, 1 to 1024; at most four for each processor.
         on_skip: Is told a house that cannot be used, and why.
 
     Yields:
@@ -152,10 +153,11 @@ def make(
         already, or was skipped.
     """
     which, shards = shard
-    todo = ((k, houses[k]) for k in range(which, len(houses), shards))
+    numbers = range(which, len(houses), shards)
+    todo = ((k, houses[k]) for k in numbers)
     ahead: deque[tuple[int, str, Future[int | str] | None]] = deque()
-    pool = ThreadPoolExecutor(threads)
-    try:
+    threads = thread_count(worker_count("threads", threads), len(numbers))
+    with thread_pool(threads) as pool:
         while True:
             for k, name in itertools.islice(todo, 2 * threads - len(ahead)):
                 folder = house_folder(out, k)
@@ -171,8 +173,6 @@ def make(
                     on_skip(name, made)
                 made = 0
             yield k, name, made
-    finally:
-        pool.shutdown(cancel_futures=True)
 
 
 def house_folder(out: Path, number: int) -> Path:
