@@ -77,18 +77,18 @@ def run(
     cases = sorted(path.name.removesuffix(".measured") for path in folder.glob("*.measured"))
     if not cases:
         raise ConfigError(f"{folder}: no bundles NAME.measured")
-    name = name or getattr(method, "__name__", type(method).__name__)
+    called = name or str(getattr(method, "__name__", type(method).__name__))
     make_folder(verdicts.parent)
     with open_exclusive(verdicts) as file:
         try:
-            known = _known(verdicts, name)
+            known = _known(verdicts, called)
             # A last line without an end is what a kill leaves.
             file.truncate(file.read().rfind(b"\n") + 1)
             file.seek(0, os.SEEK_END)
             for one in cases[which::shards]:
                 is_new = one not in known
                 if is_new:
-                    row = {"case": one, **method(bundle_of(folder, one)), "method": name}
+                    row = {"case": one, **method(bundle_of(folder, one)), "method": called}
                     check_verdict(row, f"the verdict on {one}")
                     file.write((json.dumps(row, allow_nan=False) + "\n").encode())
                     file.flush()
