@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import subprocess
@@ -17,6 +18,7 @@ from test_measure import quiet, tosses
 import dwell
 from dwell import pettingzoo as zoo
 from dwell.cli import main
+from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.episode_maker import EpisodeMaker
 from dwell.evaluation import evaluate
 from dwell.measured.importing import import_files
@@ -194,3 +196,47 @@ def test_seekers_stand_once(seekers: list[int]) -> None:
     env = zoo.parallel_env("HideAndSeek", agents=2, task_settings=settings, **STUDIO)
     with pytest.raises(dwell.ConfigError, match=re.escape(f"seekers is {seekers} of 2 agents")):
         env.reset(seed=1)
+
+
+class Guided(dwell.Task):
+    """A task upon one that a single agent cannot have."""
+
+    base = "Cooperate"
+
+    def judge(
+        self, world: dwell.World, action: str, verdict: dwell.StepResult
+    ) -> dwell.StepResult:
+        return verdict
+
+
+def test_tasks_of_several_agents_say_who_has_them(tmp_path: Path, command: Command) -> None:
+    """The engine's sentence was of agents that nobody had named."""
+    told = (
+        "'Cooperate', a task of several agents, and here one acts; make it with "
+        "dwell.pettingzoo.parallel_env('Cooperate', ...), env or vector_env"
+    )
+    for make in (DwellEnv, functools.partial(DwellVectorEnv, 2)):
+        with pytest.raises(dwell.ConfigError, match=re.escape(f"task is {told}")):
+            make("Cooperate", world={"agents": 2}, **STUDIO)
+        with pytest.raises(dwell.ConfigError, match=re.escape(f"Guided.base is {told}")):
+            make(Guided, **STUDIO)
+    places = ("--houses", "builtin:studio", "--count", "1")
+    out = ("--out", tmp_path / "episodes.jsonl")
+    for words in (
+        ("episodes", "Cooperate", *places, *out),
+        ("evaluate", "random", "--task", "Cooperate", *places),
+    ):
+        done = command(*words)
+        assert done.returncode == 1
+        assert f"task is {told}" in done.stderr
+    told = command("episodes", "Nothing", *places, *out).stderr
+    assert "task is 'Nothing'; allowed are InstructionFollowing" in told
+    assert "Cooperate" not in told
+
+
+def test_errors_within_a_factory_of_parts_stay_as_they_are() -> None:
+    def broken() -> dwell.Reward:
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match="mine"):
+        DwellEnv("Free", reward=broken, **STUDIO)
