@@ -70,7 +70,7 @@ def env(task: str = "Free", **settings: Any) -> AECEnv[str, Any, Any]:  # noqa: 
     return OrderEnforcingWrapper(_Turns(parallel_to_aec(parallel_env(task, **settings))))
 
 
-class _Turns(BaseWrapper[str, Any, Any]):
+class _Turns(BaseWrapper[str, Any, Any]):  # type: ignore[misc] # untyped
     """Says whose turn has no action; PettingZoo itself says nothing."""
 
     def step(self, action: Any) -> None:  # noqa: ANN401 - of the agent's space

@@ -203,9 +203,7 @@ class Guided(dwell.Task):
 
     base = "Cooperate"
 
-    def judge(
-        self, world: dwell.World, action: str, verdict: dwell.StepResult
-    ) -> dwell.StepResult:
+    def judge(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> dwell.StepResult:
         return verdict
 
 
@@ -240,3 +238,39 @@ def test_errors_within_a_factory_of_parts_stay_as_they_are() -> None:
 
     with pytest.raises(TypeError, match="mine"):
         DwellEnv("Free", reward=broken, **STUDIO)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "told"),
+    [
+        (
+            {"left": {"kind": "rgb"}, "right": {"kind": "rgb", "width": -1}},
+            "sensors.right: width is -1: found integer `-1`, expected a whole number from 0",
+        ),
+        (
+            {"rgb": {"width": 4}, "right": {"kind": "rgb", "width": 0}},
+            "sensors.right: camera: width is 0; allowed is 1 to 16384 pixels",
+        ),
+        ({"gps": {}, "rgb": 3}, "sensors.rgb: 3: found integer `3`, expected values by name"),
+        (["gps", "rbg"], 'no sensor "rbg"; there are'),
+        ([], "sensors is empty; expected at least one sensor, as ['gps']"),
+    ],
+)
+def test_what_is_wrong_with_a_sensor_is_told_with_its_name(
+    sensors: Any,  # noqa: ANN401
+    told: str,
+) -> None:
+    """The setting alone was told, and of no sensors at all Gymnasium asserted something."""
+    for make in (DwellEnv, functools.partial(DwellVectorEnv, 2)):
+        with pytest.raises(dwell.ConfigError, match=f"^{re.escape(told)}"):
+            make("Free", houses="builtin:studio", sensors=sensors)
+    if sensors and told.startswith("sensors"):
+        agents = {"anna": {"sensors": ["gps"]}, "ben": {"sensors": sensors}}
+        with pytest.raises(dwell.ConfigError, match=f"^{re.escape(f'agents.ben.{told}')}"):
+            zoo.parallel_env("Free", houses="builtin:studio", agents=agents)
+
+
+def test_what_is_no_sensors_fault_is_told_of_none() -> None:
+    told = "^agent is 3; allowed is below the number of agents, 1$"
+    with pytest.raises(dwell.ConfigError, match=told):
+        DwellEnv("Free", houses="builtin:studio", sensors=["gps", "rgb"], agent=3)

@@ -45,7 +45,6 @@ from dwell.object_state_api import agent_states
 from dwell.world import World
 from dwell.world_settings import Laws, Randomize
 
-
 #: What PettingZoo's own tests give to see that there are options.
 _OF_TESTS = {"options"}
 

@@ -42,6 +42,7 @@ from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.info_keys import step_info
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.sensor_errors import refuse_blind
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
@@ -205,6 +206,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         )
         self._masks = masked_form(action_mask, self._actions)
         self._measures = self._runner.measures
+        refuse_blind(self._runner.space)
         self.observation_space = self._runner.space
         self.action_space = self._actions.space
 
