@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
-from dwell.cli.job_journal import claim, refuse_other
+from dwell.cli.job_journal import alone, claim, refuse_other
 from dwell.files import atomic_write
 
 if TYPE_CHECKING:
@@ -70,16 +70,17 @@ def _make(args: argparse.Namespace) -> int:
     if args.answers:
         _refuse_lost_answers(args.answers, settings, args.shard)
     claim(args.out, job)
-    progress = ProgressBar()
-    answers, written = [], 0
-    for one, folder, is_new in make(args.out, settings, args.shard):
-        answers.append(json.dumps(one.answer()) + "\n")
-        written += is_new
-        progress((one.number + 1) / settings.cases, folder.name)
-    progress(1.0, "done")
-    if args.answers:
-        with atomic_write(args.answers) as draft:
-            draft.write_text("".join(answers), "utf-8")
+    with alone(args.out, args.shard):
+        progress = ProgressBar()
+        answers, written = [], 0
+        for one, folder, is_new in make(args.out, settings, args.shard):
+            answers.append(json.dumps(one.answer()) + "\n")
+            written += is_new
+            progress((one.number + 1) / settings.cases, folder.name)
+        progress(1.0, "done")
+        if args.answers:
+            with atomic_write(args.answers) as draft:
+                draft.write_text("".join(answers), "utf-8")
     print(f"{written} of {len(answers)} bundles written to {args.out}")
     return 0
 
