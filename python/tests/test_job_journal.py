@@ -11,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from dwell.cli.job_journal import alone, Journal
+from dwell.cli.job_journal import Journal, alone
 from dwell.episode_maker import EpisodeMaker
 
 pytestmark = pytest.mark.usefixtures("open_once")
