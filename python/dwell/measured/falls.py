@@ -173,10 +173,8 @@ def check(at: str, flights: Iterable[Flight], told: Told) -> str | None:
             )
             # A wrong gravity is what calibration finds; but not where reading the bundle takes it
             # for a wrong unit, or where no planet has it.
-            later = [
-                cause for cause in (_causes(told, fall / g) if g else []) if cause.is_told_later
-            ]
-            is_mistaken = any(_share(motions, g, cause) >= _FALLING for cause in later)
+            later = [cause for cause in _causes(told, 1.0) if cause.is_told_later]
+            is_mistaken = any(_falls_by(motions, g * cause.fall) >= _FALLING for cause in later)
             if share < _FALLING and (is_mistaken or g > _MOST_GRAVITY * STANDARD_GRAVITY_M_S2):
                 raise ValueError(f"{at}: {told_so}")
             return told_so
@@ -207,15 +205,19 @@ def _motions(flights: Iterable[Flight], told: Told) -> list[_Motion] | None:
     air_kg_m3 = _air_density(told.environment)
     for flight in flights:
         volume_m3 = 4.0 / 3.0 * math.pi * flight.radius_m**3
-        if not air_kg_m3 * volume_m3 <= _LIGHT * flight.mass_kg:
+        # What is no mass is refused with the bundle.
+        if not 0.0 < flight.mass_kg < math.inf or not flight.radius_m > 0.0:
+            continue
+        if air_kg_m3 * volume_m3 > _LIGHT * flight.mass_kg:
             continue
         section_m2 = math.pi * flight.radius_m**2
         pull = 0.5 * air_kg_m3 * _MOST_OF_AIR * section_m2 / flight.mass_kg
         for k, part in enumerate(_PARTS):
             found = _accelerations(flight.t_s, flight.places, max(len(flight.t_s) // part, 1))
-            if found is not None:
+            if found is not None and len(found[0]):
                 acceleration, speed = found
-                rows[k].append((-acceleration[:, told.height_axis], pull * speed**2))
+                with np.errstate(over="ignore"):
+                    rows[k].append((-acceleration[:, told.height_axis], pull * speed**2))
     if not all(rows):
         return None
     return [
