@@ -22,6 +22,8 @@ def with_sensor(error: ConfigError, house: House, config: str) -> ConfigError:
     there is nothing to say.
     """
     settings = from_json("config", config)
+    if not isinstance(settings, Mapping):
+        return error
     said = str(error)
     places = _places(settings)
     if not places or _refused(house, settings, None) == said:
@@ -49,28 +51,36 @@ _Place = tuple[int | None, int]
 def _places(settings: Mapping[str, Any]) -> list[tuple[str, _Place]]:
     """What each sensor is called, and where it stands: whose, and which of theirs."""
     found = []
-    owners: list[tuple[str, int | None, Mapping[str, Any]]] = [("", None, settings)]
-    owners += [(f"agents[{k}].", k, row) for k, row in enumerate(settings.get("agents", []))]
+    agents = settings.get("agents")
+    agents = agents if isinstance(agents, list) else []
+    owners: list[tuple[str, int | None, object]] = [("", None, settings)]
+    owners += [(f"agents[{k}].", k, row) for k, row in enumerate(agents)]
     for whose, agent, owner in owners:
-        for k, row in enumerate(owner.get("sensors", [])):
-            own = row["settings"]
-            name = own.get("name", row["kind"]) if isinstance(own, Mapping) else row["kind"]
-            found.append((f"{whose}sensors.{name}", (agent, k)))
+        for k, row in enumerate(_rows(owner)):
+            # Those of a replay's file are as somebody wrote them.
+            about = row if isinstance(row, Mapping) else {}
+            own = about.get("settings")
+            name = own.get("name") if isinstance(own, Mapping) else None
+            found.append((f"{whose}sensors.{name or about.get('kind')}", (agent, k)))
     return found
+
+
+def _rows(owner: object) -> list[Any]:
+    rows = owner.get("sensors") if isinstance(owner, Mapping) else None
+    return rows if isinstance(rows, list) else []
 
 
 def _refused(house: House, settings: Mapping[str, Any], place: _Place | None) -> str | None:
     """What is refused with the sensor at a place alone, or with none."""
     agent, number = (None, -1) if place is None else place
 
-    def sensors(owner: Mapping[str, Any], whose: int | None) -> list[Any]:
-        rows = owner.get("sensors", [])
-        return [rows[number]] if place is not None and whose == agent else []
+    def sensors(owner: object, whose: int | None) -> list[Any]:
+        return [_rows(owner)[number]] if place is not None and whose == agent else []
 
     own = {**settings, "sensors": sensors(settings, None)}
-    if "agents" in settings:
+    if isinstance(settings.get("agents"), list):
         own["agents"] = [
-            {**row, "sensors": sensors(row, k)} if "sensors" in row else row
+            {**row, "sensors": sensors(row, k)} if _rows(row) else row
             for k, row in enumerate(settings["agents"])
         ]
     try:
