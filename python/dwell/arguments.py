@@ -349,6 +349,15 @@ def mapping(name: str, value: object, of: str = "values by name") -> dict[str, A
     return {text(at, key): part for key, part in value.items()}
 
 
+def reset_options(value: object, *allowed: str) -> dict[str, Any]:
+    """The options of a ``reset``, none of which is unknown."""
+    options = {} if value is None else mapping("options", value)
+    if unknown := sorted({*options} - {*allowed}):
+        known = f"{', '.join(allowed[:-1])} and {allowed[-1]}"
+        raise ConfigError(f"options: no {quoted(unknown[0])}; allowed are {known}")
+    return options
+
+
 def checked_fields(
     name: str, value: object, known: Mapping[str, Callable[[str, object], Any]]
 ) -> dict[str, Any]:

@@ -35,6 +35,24 @@ def place_field(
     }
 
 
+def motion_fields(
+    place: dict[str, Any], by: Point | None, turn_deg: float | None
+) -> dict[str, Any]:
+    """Where a thing that is there goes, and by how much it is shifted and turned then.
+
+    Raises:
+        ConfigError: Nothing of it is stated.
+    """
+    stated = (place["at"], place["on"], place["yaw_deg"], by, turn_deg)
+    if all(value is None for value in stated):
+        raise ConfigError("move: no at, on, yaw_deg, by or turn_deg; expected one of them")
+    return {
+        "place": place,
+        "by": point("by", (0.0, 0.0, 0.0) if by is None else by),
+        "turn_deg": finite_number("turn_deg", 0.0 if turn_deg is None else turn_deg),
+    }
+
+
 def traits_field(
     category: str | None,
     mobility: str | None,

@@ -29,6 +29,7 @@ from dwell.edit_fields import (
     Rgb,
     Side,
     look_field,
+    motion_fields,
     optional_text,
     place_field,
     rgb,
@@ -259,8 +260,8 @@ class EditList:
         *,
         on: str | None = None,
         yaw_deg: float | None = None,
-        by: Point = (0.0, 0.0, 0.0),
-        turn_deg: float = 0.0,
+        by: Point | None = None,
+        turn_deg: float | None = None,
         anchor: Anchor = "foot",
         with_things: bool = True,
     ) -> Self:
@@ -280,9 +281,7 @@ class EditList:
             "move",
             {
                 "object": text("thing", thing),
-                "place": place_field(at, on, yaw_deg, anchor),
-                "by": point("by", by),
-                "turn_deg": finite_number("turn_deg", turn_deg),
+                **motion_fields(place_field(at, on, yaw_deg, anchor), by, turn_deg),
                 "with_things": boolean("with_things", with_things),
             },
         )

@@ -319,16 +319,25 @@ def _fields(
     return {name: checks[name](name, value) for name, value in row.items()}
 
 
-def task_of(name: str) -> dict[str, Any]:
-    """What the engine says of a task: name, version, settings, sensors, max_steps.
+def task_of(name: str, at: str = "task") -> dict[str, Any]:
+    """What the engine says of a task of one agent: name, version, settings, sensors, max_steps.
 
     Raises:
-        ConfigError: There is none of the name.
+        ConfigError: There is none of the name; the message begins with ``at``.
     """
     tasks = {task["name"]: task for task in _native.tasks()}
-    if text("task", name) not in tasks:
-        raise ConfigError(f"task is {quoted(name)}; {allowed_values(name, tasks)}")
-    return tasks[name]
+    of_one = {name: task for name, task in tasks.items() if task["min_agents"] == 1}
+    if text(at, name) in tasks and name not in of_one:
+        several = f"{at} is {name!r}, a task of several agents, and here one acts"
+        raise ConfigError(f"{several}; {several_agents(name)}")
+    if name not in of_one:
+        raise ConfigError(f"{at} is {quoted(name)}; {allowed_values(name, of_one)}")
+    return of_one[name]
+
+
+def several_agents(task: str) -> str:
+    """What has a task of several agents, as the end of a sentence."""
+    return f"make it with dwell.pettingzoo.parallel_env({task!r}, ...), env or vector_env"
 
 
 def _numbers(name: str, value: object) -> tuple[int, ...]:

@@ -123,6 +123,24 @@ def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Ite
         yield line
 
 
+def decoded(text: bytes, at: str) -> str:
+    """A text in UTF-8 without a mark at its beginning.
+
+    Raises:
+        ValueError: It is in another encoding; the message begins with ``at``.
+    """
+    try:
+        found = text.decode("utf-8-sig")
+    except UnicodeDecodeError as error:
+        byte = error.object[error.start]
+        what = f"byte {byte:#04x} at {error.start} is no UTF-8"
+        raise ValueError(f"{at}: {what}; save the file as UTF-8") from None
+    if "\0" in found:
+        # As UTF-16 has in nearly every letter.
+        raise ValueError(f"{at}: NUL is in no text; save the file as UTF-8")
+    return found
+
+
 def read_json(path: _Name) -> Any:  # noqa: ANN401 - any JSON value
     """The value of a JSON file.
 

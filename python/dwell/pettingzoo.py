@@ -16,10 +16,11 @@ from __future__ import annotations
 
 from typing import TYPE_CHECKING, Any
 
-from dwell import ConfigError
+from dwell import ConfigError, UsageError
+from dwell.arguments import quoted
 
 try:
-    from pettingzoo.utils import OrderEnforcingWrapper, parallel_to_aec
+    from pettingzoo.utils import BaseWrapper, OrderEnforcingWrapper, parallel_to_aec
 except ImportError as error:
     raise ConfigError(
         "dwell.pettingzoo needs the package pettingzoo; install it with "
@@ -66,7 +67,28 @@ def env(task: str = "Free", **settings: Any) -> AECEnv[str, Any, Any]:  # noqa: 
         task: As of :func:`parallel_env`.
         **settings: As of :class:`DwellParallelEnv`.
     """
-    return OrderEnforcingWrapper(parallel_to_aec(parallel_env(task, **settings)))
+    return OrderEnforcingWrapper(_Turns(parallel_to_aec(parallel_env(task, **settings))))
+
+
+class _Turns(BaseWrapper[str, Any, Any]):  # type: ignore[misc] # untyped
+    """Says whose turn has no action; PettingZoo itself says nothing."""
+
+    def step(self, action: Any) -> None:  # noqa: ANN401 - of the agent's space
+        """Takes one agent's turn.
+
+        Raises:
+            UsageError: Its episode has ended, and the action is not ``None``.
+        """
+        agent = self.agent_selection
+        if action is not None and (self.terminations[agent] or self.truncations[agent]):
+            raise UsageError(
+                f"step: the episode of {agent} has ended; its action is {quoted(action, 80)}, "
+                "expected None"
+            )
+        super().step(action)
+
+    def __str__(self) -> str:
+        return str(self.env)
 
 
 def vector_env(

@@ -86,16 +86,28 @@ def factory(
     is_class = isinstance(called, type) and issubclass(called, kind)
     # Nobody is called who only happens to be callable, as os.abort is.
     is_function = isinstance(called, types.FunctionType | types.MethodType)
+    of = "of the settings" if settings else "without arguments"
+    expected = (
+        f"expected a subclass of dwell.{kind.__name__}, a function {of} that makes one, or "
+        "'module:Name' of a subclass"
+    )
     if not callable(make) or not (is_class or (is_function and not isinstance(given, str))):
-        expected = f"a subclass of dwell.{kind.__name__}, a function that makes one, or "
-        raise ConfigError(
-            f"{at} is {quoted(given)}; expected {expected}'module:Name' of a subclass"
-        )
+        raise ConfigError(f"{at} is {quoted(given)}; {expected}")
     if missing := sorted(getattr(called, "__abstractmethods__", ())):
         raise ConfigError(f"{at}: {quoted(given)} lacks the method {missing[0]}")
     fields = {} if settings is None else mapping(f"settings of {at}", settings)
     if fields:
         _refuse_unknown_settings(f"settings of {at}", make, fields)
+    try:
+        inspect.signature(make).bind(**fields)
+    except TypeError as error:
+        by = "settings" if fields else "no arguments"
+        raise ConfigError(
+            f"{at} is {quoted(given)}, which cannot be called with {by}: {error}; {expected}"
+        ) from None
+    except ValueError:
+        # Some that are not written in Python have no signature; they say themselves what is wrong.
+        pass
 
     def made() -> _Part:
         part = make(**fields)

@@ -359,14 +359,10 @@ class Replay:
     ) -> NativeBatch:
         from dwell.envs.native_batch import NativeBatch
         from dwell.envs.python_tasks import PythonTask, split
-        from dwell.episodes import task_of
 
         given, custom = [], PythonTask()
         if task is not None or reward is not None:
-            settings, custom = split("Free" if task is None else task, None, reward, None)
-            if custom.task is None:
-                # Of the engine: there is one of that name.
-                task_of(settings.task)
+            _, custom = split("Free" if task is None else task, None, reward, None)
             given = [
                 type(make()).__name__ for make in (custom.task, custom.reward) if make is not None
             ]

@@ -190,7 +190,8 @@ def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
             first = law["params"][0]
             example = {name: {first["name"]: first["plausible"][1]}}
             raise ConfigError(
-                f"{at}: {name} without numbers does nothing; give some, as laws={example}; {_has(law)}"
+                f"{at}: {name} without numbers does nothing; "
+                f"give some, as laws={example}; {_has(law)}"
             )
         row["params"] = law["usual"]
     known = {param["name"]: param for param in law["params"]}

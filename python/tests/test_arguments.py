@@ -172,7 +172,8 @@ def test_laws_are_given_in_short_or_in_full(shoebox: dwell.House, laws: Any) -> 
         ("dragg", "laws[0]: no law 'dragg'; did you mean drag? allowed are drag, visc"),
         (
             "wind",
-            "laws[0]: wind without numbers does nothing; give some, as laws={'wind': {'x_m_s': 1.0}}",
+            "laws[0]: wind without numbers does nothing; "
+            "give some, as laws={'wind': {'x_m_s': 1.0}}",
         ),
         ("", "laws[0]: no law ''; allowed are drag"),
         (["drag", "latency"], "laws[1]: latency without numbers does nothing"),

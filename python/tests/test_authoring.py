@@ -62,6 +62,8 @@ def test_edits_make_a_new_house_that_pickles_and_writes(tmp_path: Path) -> None:
         edit.add_copy("cup_1", on="brick")
         edit.add_emitter("radio", thing="mine", level_db=50.0)
         edit.describe("brick", pickable=False).rename("changed").rename("den", room="study")
+        with pytest.raises(dwell.ConfigError, match="move: no at, on, yaw_deg, by or turn_deg"):
+            edit.move("desk")
     assert house.info() == before
     changed = edit.house
     info = changed.info()

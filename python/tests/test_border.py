@@ -303,7 +303,7 @@ CALLS = [
     ("env.step(-1)", "action is -1"),
     ("env.step(1.5)", "action is 1.5"),
     ("env.reset(options=5)", "options is 5"),
-    ('DwellEnv("nope")', 'no task "nope"'),
+    ('DwellEnv("nope")', "task is 'nope'; allowed are Ins"),
     ("DwellEnv(5)", "task is 5"),
     ("DwellEnv(houses=3)", "houses is 3"),
     ('DwellEnv(houses="builtin:nothing")', 'no built-in house "nothing"'),
@@ -313,16 +313,16 @@ CALLS = [
     ('DwellEnv(sensors={"smell": {}})', 'no sensor "smell"'),
     (
         'DwellEnv(sensors={"rgb": 5})',
-        "sensor settings: 5: found integer `5`, expected values by name",
+        "sensors.rgb: 5: found integer `5`, expected values by name",
     ),
     (
         'DwellEnv(sensors={"rgb": {"width": "x"}})',
-        'sensor settings: width is "x": found string "x", expected a whol',
+        'sensors.rgb: width is "x": found string "x", expected a whol',
     ),
     ('DwellEnv(sensors={"rgb": {"width": nan}})', "sensors[0].settings.width is nan"),
     (
         'DwellEnv(sensors={"rgb": {"nope": 1}})',
-        "sensor settings: nope is 1: unknown field `nope`, expected one o",
+        "sensors.rgb: nope is 1: unknown field `nope`, expected one o",
     ),
     ("DwellEnv(stride=5)", "stride is 5"),
     ('DwellEnv(stride={"nope": 1})', "stride: no field 'nope'"),

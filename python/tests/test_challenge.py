@@ -25,7 +25,7 @@ from dwell.challenge import (
     run,
     score,
 )
-from dwell.challenge.cases import STRATA, WORLDS, _kind_of
+from dwell.challenge.cases import STRATA, WORLDS, _kind_of, name_of
 from dwell.challenge.detection import Detector
 from dwell.challenge.noise import Noise
 from dwell.challenge.rows import read_answers, read_verdicts
@@ -358,11 +358,82 @@ def test_a_method_that_says_nothing_is_told(tmp_path: Path) -> None:
     assert not verdicts.exists()
 
 
-def test_of_two_verdicts_on_a_case_the_last_counts() -> None:
-    right = {"case": ANSWERS[0]["case"], **perfect(ANSWERS[0])}
-    wrong = {**right, "kind": "named", "sets": [["drag"]]}
-    found = score(ANSWERS, [wrong, right])
-    assert (found["judged"], found["false_alarms"]["hits"]) == (1, 0)
+def test_a_file_of_verdicts_is_of_one_method_and_one_process(tmp_path: Path) -> None:
+    """It went on with the verdicts of any, and two at once wrote each case twice."""
+    list(make(tmp_path / "cases", ChallengeSettings(cases=2, seed=2)))
+    verdicts = tmp_path / "new/verdicts.jsonl"
+    said = {"kind": "nothing", "sets": [], "parameters": {}}
+    first = run(tmp_path / "cases", verdicts, lambda _: said, name="a")
+    next(first)
+    with pytest.raises(ValueError, match=r"verdicts\.jsonl is being written by another process"):
+        list(run(tmp_path / "cases", verdicts, lambda _: said, name="a"))
+    first.close()
+    with pytest.raises(ValueError, match="keeps verdicts of another method: 'a', not 'b'"):
+        list(run(tmp_path / "cases", verdicts, lambda _: said, name="b"))
+    assert [row["method"] for row in read_verdicts(verdicts)] == ["a"]
+    verdicts.write_text(json.dumps({"case": "0", **said}) + "\n")
+    with pytest.raises(ValueError, match="of another method: one that is not named, not 'perfect'"):
+        list(run(tmp_path / "cases", verdicts, perfect))
+
+
+def test_scores_are_of_one_verdict_on_each_case_and_of_one_method(tmp_path: Path) -> None:
+    """Of two the last counted, and of none of the cases a score was made."""
+    rows = [{"case": row["case"], **perfect(row)} for row in ANSWERS]
+    with pytest.raises(ValueError, match=f"two on case '{ANSWERS[0]['case']}'"):
+        score(ANSWERS, [rows[0], *rows])
+    with pytest.raises(ValueError, match=f"case '{ANSWERS[0]['case']}' has two that differ"):
+        score([*ANSWERS, {**ANSWERS[0], "kind": "one"}], rows)
+    assert score([*ANSWERS, ANSWERS[0]], rows)["judged"] == 9
+    methods = [{**row, "method": "ab"[k % 2]} for k, row in enumerate(rows)]
+    with pytest.raises(ValueError, match="of the methods 'a', 'b'; scores are of one"):
+        score(ANSWERS, methods)
+    with pytest.raises(ValueError, match="none of the 9 is on one of the 1 cases of the answers"):
+        score([{**ANSWERS[0], "case": "other"}], rows)
+    found = score(ANSWERS[1:], rows)
+    assert (found["judged"], found["unanswered"]) == (8, 1)
+    path = tmp_path / "verdicts.jsonl"
+    path.write_text("".join(json.dumps(row) + "\n" for row in [*rows, rows[2]]))
+    with pytest.raises(ValueError, match=r"line 10: case '000000000002' stands in line 3, too"):
+        list(read_verdicts(path))
+
+
+def test_cases_of_other_settings_have_other_names() -> None:
+    settings = [
+        ChallengeSettings(cases=1, seed=seed, worlds=worlds)
+        for seed in (0, 1)
+        for worlds in (("flights", "servos"), ("servos", "flights"), ("flights",), ("servos",))
+    ]
+    assert len({name_of(0, one) for one in settings}) == len(settings)
+    assert name_of(0, settings[0]) == case(0, settings[0]).name == "a30febcfd9c2"
+    assert name_of(0, settings[2]) == case(0, settings[2]).name
+
+
+def test_other_cases_are_not_mixed_with_those_of_a_folder_or_an_answers_file(
+    tmp_path: Path, command: Callable[..., subprocess.CompletedProcess[str]]
+) -> None:
+    """Bundles of two seeds stood side by side, and the first answers were gone."""
+    out, answers = tmp_path / "cases", tmp_path / "answers.jsonl"
+
+    def said(*options: object, out: Path = out) -> str:
+        done = command("challenge", "make", "--out", out, "--answers", answers, *options)
+        assert (done.returncode == 1) == bool(done.stderr)
+        return done.stderr
+
+    # Cases 0 and 2, in which nothing is hidden, are made fast.
+    assert not said("--cases", "2", "--shard", "0/2")
+    kept = answers.read_bytes(), sorted(os.listdir(out))
+    assert "was begun with seed (a hash)" in said("--seed", "1")
+    assert "was begun with worlds ['flights', 'servos']" in said("--worlds", "servos")
+    lost = "answers.jsonl keeps 1 answers to cases that are not made now, as"
+    assert lost in said("--worlds", "servos", out=tmp_path / "others")
+    assert lost in said("--shard", "1/2")
+    assert not (tmp_path / "others").exists()
+    assert (answers.read_bytes(), sorted(os.listdir(out))) == kept
+    # More of the same go on.
+    assert not said("--cases", "3", "--shard", "0/2")
+    assert len(list(read_answers(answers))) == 2
+    answers.write_text("my notes\n")
+    assert "answers.jsonl line 1: no JSON" in said("--cases", "3")
 
 
 @pytest.mark.parametrize(
@@ -393,6 +464,9 @@ def test_the_commands_make_and_score(
     done = command("challenge", "score", verdicts, "--answers", answers)
     assert done.returncode == 0, done.stderr
     assert "2 cases judged" in done.stdout
+    answers.write_text(answers.read_text("utf-8").replace(rows[0]["case"], "0" * 12), "utf-8")
+    done = command("challenge", "score", verdicts, "--answers", answers)
+    assert "1 cases judged; 1 verdicts on other cases left out" in done.stdout
     done = command("challenge", "make", "--out", out, "--answers", out / "answers.jsonl")
     assert done.returncode == 1
     assert "outside of" in done.stderr

@@ -182,3 +182,64 @@ def test_the_command_judges_files_and_views(
     rows.write_text('{"words": 1}\n', "utf-8")
     assert cli.main(["check-text", "builtin:apartment", "--file", str(rows)]) == 1
     assert "line 1: expected an object with a text" in capsys.readouterr().err
+
+
+STUDIO = ["check-text", "builtin:studio"]
+
+
+@pytest.mark.parametrize("name", ["texts.txt", "texts.jsonl"])
+def test_files_in_utf_8_may_have_a_mark_and_others_are_refused(
+    name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """The mark was a word of the text, and other encodings were read as strange letters."""
+    is_json, file = name.endswith("jsonl"), tmp_path / name
+    text = "There is a bed, étoile."
+    written = json.dumps({"text": text}, ensure_ascii=False) if is_json else text
+    file.write_bytes((written.replace(", étoile", "") + "\n").encode("utf-8-sig"))
+    assert cli.main([*STUDIO, "--file", str(file)]) == 0
+    assert capsys.readouterr().out.startswith("There is a bed. true")
+    plain = written.replace("étoile", "star")
+    for other, told in [
+        (written.encode("latin-1"), "byte 0xe9 at"),
+        (plain.encode("utf-16"), "byte 0xff at 0 is no UTF-8"),
+        (plain.encode("utf-16-le"), "NUL is in no text"),
+    ]:
+        file.write_bytes(other)
+        assert cli.main([*STUDIO, "--file", str(file)]) == 1
+        said = capsys.readouterr().err
+        assert f"{name} line 1: {told}" in said
+        assert "save the file as UTF-8" in said
+
+
+@pytest.mark.parametrize(
+    ("field", "told"),
+    [
+        ({"viewer": {"position": [1]}}, "viewer position: expected three numbers"),
+        ({"viewer": {"position": [1, 1, 1], "yaw": 3}}, "viewer is {'position': [1, 1, 1], 'yaw'"),
+        ({"house": 5}, "house is 5; expected text or a path"),
+        ({"house": "builtin:nope"}, 'no built-in house "nope"'),
+        ({"text": "a " * 40_000}, "the text has 80000 bytes"),
+    ],
+)
+def test_a_row_that_cannot_be_judged_is_told_with_its_line(
+    field: dict[str, Any], told: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    rows = tmp_path / "bad.jsonl"
+    good = {"text": "There is a bed."}
+    rows.write_text("".join(json.dumps(row) + "\n" for row in (good, {**good, **field})), "utf-8")
+    assert cli.main([*STUDIO, "--file", str(rows)]) == 1
+    assert f"bad.jsonl line 2: {told}" in capsys.readouterr().err
+
+
+def test_a_text_or_a_file_is_needed_and_has_words(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(STUDIO) == 2
+    assert "HOUSE [TEXT ...] [--file FILE]" in (said := capsys.readouterr().err)
+    assert "required: TEXT (or --file FILE)" in said
+    assert cli.main([*STUDIO, "A bed.", " "]) == 1
+    assert capsys.readouterr() == ("", "dwell check-text: TEXT is ' '; expected a sentence\n")
+    empty = tmp_path / "empty.txt"
+    empty.write_text("\n\n")
+    assert cli.main([*STUDIO, "--file", str(empty)]) == 1
+    assert "empty.txt: no text; expected one a line" in capsys.readouterr().err

@@ -378,6 +378,8 @@ MAKING: list[tuple[dict[str, Any], str]] = [
     ({"task": GoThere, "task_settings": 5}, "settings of task is 5"),
     ({"reward": Doubled()}, "exists already"),
     ({"reward": 3}, "reward is 3"),
+    ({"reward": lambda world, action, verdict: 1.0}, "no arguments: missing a required argument"),
+    ({"reward": lambda world: 1.0}, "a subclass of dwell.Reward, a function without arguments"),
     ({"sensors": ["gps", Noisy()]}, "exists already"),
     ({"sensors": ["gps", Noisy, Noisy]}, "'noisy' twice"),
     ({"sensors": ["gps", Gps]}, "'gps' twice"),

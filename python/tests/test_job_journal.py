@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import json
+import os
 import subprocess
 from collections.abc import Callable
 from pathlib import Path
@@ -10,7 +11,7 @@ from typing import Any
 
 import pytest
 
-from dwell.cli.job_journal import Journal
+from dwell.cli.job_journal import Journal, alone
 from dwell.episode_maker import EpisodeMaker
 
 pytestmark = pytest.mark.usefixtures("open_once")
@@ -147,3 +148,33 @@ def test_kept_episodes_of_other_options_are_told_by_the_options(
     assert refused.returncode == 1
     assert "line 5: what is kept up to here is not what was written" in refused.stderr
     assert f"remove {kept}" in refused.stderr
+
+
+@pytest.mark.parametrize(
+    "words",
+    [
+        ("views", "make", "builtin:studio"),
+        ("challenge", "make", "--cases", "2"),
+    ],
+    ids=["views", "challenge"],
+)
+def test_two_equal_jobs_at_once_are_told(
+    words: tuple[str, ...],
+    tmp_path: Path,
+    command: Command,
+) -> None:
+    """The slower of the two was told that a folder stands there already."""
+    out = tmp_path / "out"
+    out.mkdir()
+    for shard, told in [((0, 1), os.fspath(out)), ((1, 2), f"shard 1/2 of {out}")]:
+        given = ("--shard", f"{shard[0]}/{shard[1]}", "--out", out)
+        # The first thing that is made is what the folder holds.
+        with pytest.MonkeyPatch.context() as patch:
+            patch.setattr("dwell.views.dataset.make", lambda *_, **__: iter(()))
+            patch.setattr("dwell.challenge.make", lambda *_, **__: iter(()))
+            assert command(*words, *given).returncode == 0
+        with alone(out, shard):
+            done = command(*words, *given)
+        assert done.returncode == 1
+        assert f"{told} is being made by another process; wait for its end" in done.stderr
+    assert os.listdir(out) == ["dataset.json"]

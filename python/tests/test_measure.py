@@ -7,6 +7,7 @@ import gc
 import json
 import math
 import os
+import re
 import subprocess
 import sys
 from pathlib import Path
@@ -224,6 +225,32 @@ def test_real_sets_are_imported_whole(tmp_path: Path, name: str, episodes: int |
     assert counts["episodes"] == _native.check_measured(str(out))
     if episodes is not None:
         assert counts["episodes"] == episodes
+
+
+def test_real_drops_fall_as_they_are_told_and_not_in_other_units(tmp_path: Path) -> None:
+    """Whiffle balls, which air slows to a third of free fall, among bowling and golf balls."""
+    folder = shared() / "ball_drops"
+    if not folder.is_dir():
+        pytest.skip(f"{folder} is absent")
+    mapping = json.loads((MAPS / "ball_drops.json").read_text("utf-8"))
+    mapping["table"]["file"] = "data.csv"
+    files = [folder / "data.csv", folder / "index.csv"]
+
+    def imported(name: str, **changed: object) -> dict[str, Any]:
+        path = tmp_path / f"{name}.json"
+        path.write_text(json.dumps({**mapping, **changed}))
+        return import_files(files, path, tmp_path / f"{name}.measured", quiet)
+
+    assert "notes" not in imported("right")
+    for name, changed, told in [
+        ("dm", {"table": {**mapping["table"], "metres_per_unit": 0.1}}, "lengths in metres?"),
+        ("long", {"table": {**mapping["table"], "seconds_per_unit": 2}}, "times in seconds?"),
+        ("heavy", {"g_m_s2": 98.1}, "so things fall on Earth"),
+    ]:
+        with pytest.raises(ValueError, match=re.escape(told)):
+            imported(name, **changed)
+    for name, g_m_s2 in [("moon", 1.62), ("none", 0.0), ("giant", 25.0)]:
+        assert "so things fall on Earth" in imported(name, g_m_s2=g_m_s2)["notes"][0]
 
 
 def test_two_tables_of_one_name_are_refused(tmp_path: Path) -> None:

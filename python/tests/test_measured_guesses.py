@@ -276,6 +276,10 @@ def test_the_command_prints_the_map_of_files(
     for command in (["--init", *files], [*files, "--init"], ["--init", "trajectory", *files]):
         assert cli.main(["measure", "import", *command]) == 0
         assert json.loads(capsys.readouterr().out)["bodies"]["mass_kg"] == "mass_kg"
+    assert cli.main(["measure", "import", "--init", "traject"]) == 1
+    told = "--init is 'traject', which is no file that is there and no kind; of kinds did you mean"
+    assert told in (said := capsys.readouterr().err)
+    assert "allowed are pose_trajectory, trajectory, drive, servo, impulse_response" in said
     assert cli.main(["measure", "import", "--init", "servo"]) == 0
     template = json.loads(capsys.readouterr().out)
     assert template["confirmed"] is False

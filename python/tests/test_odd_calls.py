@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import functools
 import json
 import re
 import subprocess
@@ -17,6 +18,7 @@ from test_measure import quiet, tosses
 import dwell
 from dwell import pettingzoo as zoo
 from dwell.cli import main
+from dwell.envs import DwellEnv, DwellVectorEnv
 from dwell.episode_maker import EpisodeMaker
 from dwell.evaluation import evaluate
 from dwell.measured.importing import import_files
@@ -194,3 +196,81 @@ def test_seekers_stand_once(seekers: list[int]) -> None:
     env = zoo.parallel_env("HideAndSeek", agents=2, task_settings=settings, **STUDIO)
     with pytest.raises(dwell.ConfigError, match=re.escape(f"seekers is {seekers} of 2 agents")):
         env.reset(seed=1)
+
+
+class Guided(dwell.Task):
+    """A task upon one that a single agent cannot have."""
+
+    base = "Cooperate"
+
+    def judge(self, world: dwell.World, action: str, verdict: dwell.StepResult) -> dwell.StepResult:
+        return verdict
+
+
+def test_tasks_of_several_agents_say_who_has_them(tmp_path: Path, command: Command) -> None:
+    """The engine's sentence was of agents that nobody had named."""
+    told = (
+        "'Cooperate', a task of several agents, and here one acts; make it with "
+        "dwell.pettingzoo.parallel_env('Cooperate', ...), env or vector_env"
+    )
+    for make in (DwellEnv, functools.partial(DwellVectorEnv, 2)):
+        with pytest.raises(dwell.ConfigError, match=re.escape(f"task is {told}")):
+            make("Cooperate", world={"agents": 2}, **STUDIO)
+        with pytest.raises(dwell.ConfigError, match=re.escape(f"Guided.base is {told}")):
+            make(Guided, **STUDIO)
+    places = ("--houses", "builtin:studio", "--count", "1")
+    out = ("--out", tmp_path / "episodes.jsonl")
+    for words in (
+        ("episodes", "Cooperate", *places, *out),
+        ("evaluate", "random", "--task", "Cooperate", *places),
+    ):
+        done = command(*words)
+        assert done.returncode == 1
+        assert f"task is {told}" in done.stderr
+    told = command("episodes", "Nothing", *places, *out).stderr
+    assert "task is 'Nothing'; allowed are InstructionFollowing" in told
+    assert "Cooperate" not in told
+
+
+def test_errors_within_a_factory_of_parts_stay_as_they_are() -> None:
+    def broken() -> dwell.Reward:
+        raise TypeError("mine")
+
+    with pytest.raises(TypeError, match="mine"):
+        DwellEnv("Free", reward=broken, **STUDIO)
+
+
+@pytest.mark.parametrize(
+    ("sensors", "told"),
+    [
+        (
+            {"left": {"kind": "rgb"}, "right": {"kind": "rgb", "width": -1}},
+            "sensors.right: width is -1: found integer `-1`, expected a whole number from 0",
+        ),
+        (
+            {"rgb": {"width": 4}, "right": {"kind": "rgb", "width": 0}},
+            "sensors.right: camera: width is 0; allowed is 1 to 16384 pixels",
+        ),
+        ({"gps": {}, "rgb": 3}, "sensors.rgb: 3: found integer `3`, expected values by name"),
+        (["gps", "rbg"], 'no sensor "rbg"; there are'),
+        ([], "sensors is empty; expected at least one sensor, as ['gps']"),
+    ],
+)
+def test_what_is_wrong_with_a_sensor_is_told_with_its_name(
+    sensors: Any,  # noqa: ANN401
+    told: str,
+) -> None:
+    """The setting alone was told, and of no sensors at all Gymnasium asserted something."""
+    for make in (DwellEnv, functools.partial(DwellVectorEnv, 2)):
+        with pytest.raises(dwell.ConfigError, match=f"^{re.escape(told)}"):
+            make("Free", houses="builtin:studio", sensors=sensors)
+    if sensors and told.startswith("sensors"):
+        agents = {"anna": {"sensors": ["gps"]}, "ben": {"sensors": sensors}}
+        with pytest.raises(dwell.ConfigError, match=f"^{re.escape(f'agents.ben.{told}')}"):
+            zoo.parallel_env("Free", houses="builtin:studio", agents=agents)
+
+
+def test_what_is_no_sensors_fault_is_told_of_none() -> None:
+    told = "^agent is 3; allowed is below the number of agents, 1$"
+    with pytest.raises(dwell.ConfigError, match=told):
+        DwellEnv("Free", houses="builtin:studio", sensors=["gps", "rgb"], agent=3)

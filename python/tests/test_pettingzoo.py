@@ -358,6 +358,34 @@ def test_a_vector_says_when_it_has_no_episodes() -> None:
             call()
 
 
+def test_options_are_read_and_refused_as_those_of_one_agent() -> None:
+    """``episode_ids`` and ``episode`` were passed over in silence."""
+    one = zoo.parallel_env("Free", **STUDIO)
+    _, infos = one.reset(seed=1)
+    for env in (one, zoo.env("Free", **STUDIO)):
+        for name in ("episode_ids", "episode", "seed"):
+            told = f"options: no '{name}'; allowed are house and episode_id"
+            with pytest.raises(dwell.ConfigError, match=told):
+                env.reset(options={name: 1})
+        # As PettingZoo's own tests do.
+        env.reset(seed=0, options={"options": 1})
+        env.reset(options={"episode_id": infos["agent_0"]["episode_id"]})
+
+
+def test_who_takes_turns_and_has_none_left_is_told() -> None:
+    """It was an assertion without a word."""
+    env = zoo.env("Free", max_cycles=1, **STUDIO)
+    env.reset(seed=1)
+    for _ in range(2):
+        env.step(0)
+    told = "step: the episode of agent_0 has ended; its action is 0, expected None"
+    with pytest.raises(dwell.UsageError, match=told):
+        env.step(0)
+    for _ in range(2):
+        env.step(None)
+    assert env.agents == []
+
+
 @pytest.mark.long
 def test_the_pair_that_cooperates_ends_together() -> None:
     env = zoo.parallel_env(

@@ -6,6 +6,7 @@ import itertools
 import json
 import math
 import re
+import shutil
 from collections.abc import Callable
 from pathlib import Path
 from typing import Any
@@ -295,6 +296,101 @@ def test_feet_are_named_where_air_slows_what_falls(tmp_path: Path) -> None:
     assert brought(tmp_path, FLIGHT, dropped)["episodes"] == 4
 
 
+def in_frames(rows: Rows) -> None:
+    for k, row in enumerate(rows):
+        row[1] = k % 40
+
+
+def with_units(unit: str) -> dict[str, Any]:
+    return with_table(FLIGHT, units=dict.fromkeys("xyz", unit))
+
+
+def at_rate(per_second: float) -> dict[str, Any]:
+    return with_table(FLIGHT, units={"t_s": {"per_second": per_second}})
+
+
+FALLS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
+    (with_units("mm"), lambda rows: scaled(rows, 1e2, 2, 3, 4), "lengths in centimetres?"),
+    (with_units("dm"), lambda rows: None, "lengths in metres?"),
+    (with_units("ft"), lambda rows: None, "lengths in metres?"),
+    (FLIGHT, lambda rows: scaled(rows, 10.0, 2, 3, 4), "lengths in decimetres?"),
+    (FLIGHT, lambda rows: scaled(rows, 0.1, 2, 3, 4), 'too small? Write "metres_per_unit": 10'),
+    (FLIGHT, lambda rows: scaled(rows, 2.0, 1), 'rate? Write {"factor": 0.5} for its'),
+    (at_rate(50.0), in_frames, "frame rate 100, not 50?"),
+    (at_rate(200.0), in_frames, "frame rate 100, not 200?"),
+    (with_table(FLIGHT, units={"t_s": "min"}), lambda rows: None, "times in seconds?"),
+    (FLIGHT, lambda rows: scaled(rows, 1.0 / 60.0, 1), "times in minutes?"),
+    *(
+        ({**FLIGHT, "g_m_s2": g}, lambda rows: None, f"{g:g} by g_m_s2: so things fall on Earth")
+        for g in (3.7, 98.1)
+    ),
+]
+
+
+@pytest.mark.parametrize(("mapping", "change", "told"), FALLS)
+def test_what_falls_by_another_acceleration_is_told_with_what_explains_it(
+    tmp_path: Path, mapping: dict[str, Any], change: Callable[[Rows], object], told: str
+) -> None:
+    """All but minutes were imported without a word, and those were taken for milliseconds."""
+    found = refused(tmp_path, mapping, change)
+    assert "data.csv: what flies falls at about " in found
+    assert told in found
+
+
+def by_gravity(g_m_s2: float) -> Callable[[Rows], object]:
+    def change(rows: Rows) -> None:
+        for row in rows:
+            row[3] += (4.905 - 0.5 * g_m_s2) * (row[1] - 5.0) ** 2
+
+    return change
+
+
+def through_air(rows: Rows) -> None:
+    """A ball of foam (3 g, 7 cm across) is thrown up, with quadratic drag, c_d = 1."""
+    rows.clear()
+    pull = 0.5 * 1.2 * math.pi * 0.035**2 / 0.003
+    for name in range(4):
+        x, y, u, v = 0.0, 1.0, 2.0, 4.0 + name
+        for k in range(500):
+            if k % 10 == 0:
+                rows.append([f"e{name}", k / 500.0, x, y, 0.0])
+            speed = math.hypot(u, v)
+            u -= pull * speed * u / 500.0
+            v -= (9.81 + pull * speed * v) / 500.0
+            x, y = x + u / 500.0, y + v / 500.0
+
+
+@pytest.mark.parametrize("g", [0.0, 1.62, 3.71, 24.8])
+def test_other_planets_are_imported_where_the_data_agrees(tmp_path: Path, g: float) -> None:
+    done = brought(tmp_path, {**FLIGHT, "g_m_s2": g}, by_gravity(g))
+    assert done == {"rows": 160, "episodes": 4, "left_out": 0}
+
+
+def test_what_air_slows_and_buoyancy_carries_is_imported(tmp_path: Path) -> None:
+    foam = ("0.0027,0.04", "0.003,0.07")
+    assert "notes" not in brought(tmp_path, FLIGHT, through_air, index=foam)
+    shutil.rmtree(tmp_path / "o.measured")
+    # A balloon, with the air in it: what it falls by is nothing that is known.
+    balloon = ("0.0027,0.04", "0.017,0.28")
+    assert "notes" not in brought(tmp_path, FLIGHT, by_gravity(1.0), index=balloon)
+
+
+@pytest.mark.parametrize("g", [0.0, 1.62, 25.0])
+def test_a_gravity_that_is_none_of_the_data_is_noted(tmp_path: Path, g: float) -> None:
+    """Calibration is there to find it."""
+    found: dict[str, Any] = brought(tmp_path, {**FLIGHT, "g_m_s2": g})
+    (note,) = found["notes"]
+    assert f"about 9.81 m/s2 by column 'y', and free fall is {g:g} by g_m_s2: so things" in note
+
+
+def test_what_no_slip_explains_is_noted(tmp_path: Path) -> None:
+    # Of steel, which air does not slow.
+    found: dict[str, Any] = brought(tmp_path, FLIGHT, by_gravity(5.0), index=("0.0027", "0.27"))
+    (note,) = found["notes"]
+    assert note.startswith("what flies falls at about 5 m/s2 by column 'y', and free fall is 9.8")
+    assert note.endswith("are units, frame rate and g_m_s2 right?")
+
+
 def test_a_gap_is_named(tmp_path: Path) -> None:
     def late(rows: Rows) -> None:
         for row in rows[20:40]:
@@ -367,7 +463,7 @@ def test_maps_and_lists_of_bodies_are_told_with_what_to_change(tmp_path: Path) -
     for mapping in (FLIGHT, POSES, DRIVE):
         told = refused(tmp_path, with_table(mapping, seconds_per_unit=-1))
         assert "table: seconds_per_unit is -1; a finite number above 0 is needed" in told
-    told = refused(tmp_path, with_table(FLIGHT, seconds_per_unit=1e-12))
+    told = refused(tmp_path, with_table(POSES, seconds_per_unit=1e-12))
     assert "data.csv row 2: column 't_s' is" in told
     assert "both are 0.000000000 s at seconds_per_unit 1e-12" in told
     with pytest.raises(ValueError, match=r"is 1e\+300, which is no finite number of seconds"):

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import hashlib
 from typing import Any
 
 import numpy as np
@@ -15,7 +16,7 @@ from dwell.challenge.flights import Flights
 from dwell.challenge.noise import Noise
 from dwell.challenge.servos import Servos
 
-__all__ = ["STRATA", "WORLDS", "Case", "ChallengeSettings", "case"]
+__all__ = ["STRATA", "WORLDS", "Case", "ChallengeSettings", "case", "name_of"]
 
 #: The worlds. To add one: a file with a class like :class:`Flights`, and its name here.
 WORLDS: dict[str, World] = {world.name: world for world in (Flights(), Servos())}
@@ -30,6 +31,7 @@ _UNITS = (0.3, 30.0)
 _D_PRIME_A_UNIT = 5.0
 #: Effects and strengths that are tried before a case draws another situation.
 _TRIES = 12
+_NAME_BITS = 48
 
 
 @dataclasses.dataclass(frozen=True)
@@ -124,6 +126,22 @@ def _kind_of(number: int) -> str:
     raise AssertionError("shares add up to the total")
 
 
+def name_of(number: int, settings: ChallengeSettings) -> str:
+    """What a case's bundle is called; other settings but ``cases`` give other names."""
+    return _name(np.random.default_rng([settings.seed, number]), settings)
+
+
+def _name(rng: np.random.Generator, settings: ChallengeSettings) -> str:
+    """The first draw of a case."""
+    drawn = int(rng.integers(1 << _NAME_BITS))
+    if settings.worlds != tuple(WORLDS):
+        # The same draw in other worlds is another case.
+        worlds = " ".join(settings.worlds).encode()
+        digest = hashlib.blake2b(worlds, digest_size=_NAME_BITS // 8).digest()
+        drawn ^= int.from_bytes(digest, "big")
+    return f"{drawn:012x}"
+
+
 def case(number: int, settings: ChallengeSettings) -> Case:
     """Draws a case; of all arguments but ``cases`` alone.
 
@@ -133,7 +151,7 @@ def case(number: int, settings: ChallengeSettings) -> Case:
     """
     kind = _kind_of(number)
     rng = np.random.default_rng([settings.seed, number])
-    name = f"{int(rng.integers(1 << 48)):012x}"
+    name = _name(rng, settings)
     while True:
         world = WORLDS[settings.worlds[int(rng.integers(len(settings.worlds)))]]
         known = world.conditions(rng)

@@ -57,6 +57,10 @@ _VERDICT: dict[str, tuple[_Check, str]] = {
         lambda value: isinstance(value, dict) and all(map(_is_estimates, value.values())),
         "by effect and name [value, low, high]",
     ),
+    "method": (
+        lambda value: value is None or isinstance(value, str),
+        "the name of what judged, or none",
+    ),
 }
 _ANSWER: dict[str, tuple[_Check, str]] = {
     "kind": (lambda value: isinstance(value, str), "the kind of the case"),
@@ -89,7 +93,7 @@ def read_answers(path: Path) -> Iterator[dict[str, Any]]:
     """The rows of a file of answers.
 
     Raises:
-        ValueError: A line is none; the message names line and field.
+        ValueError: A line is none, or a case stands twice; the message names line and field.
     """
     return _rows(path, _ANSWER)
 
@@ -98,12 +102,13 @@ def read_verdicts(path: Path) -> Iterator[dict[str, Any]]:
     """The rows of a file of verdicts.
 
     Raises:
-        ValueError: A line is none; the message names line and field.
+        ValueError: A line is none, or a case stands twice; the message names line and field.
     """
     return _rows(path, _VERDICT)
 
 
 def _rows(path: Path, fields: dict[str, tuple[_Check, str]]) -> Iterator[dict[str, Any]]:
+    seen: dict[str, int] = {}
     with open_file(path) as file:
         for number, line in enumerate(lines(file, path), start=1):
             if not line.endswith(b"\n"):
@@ -114,4 +119,8 @@ def _rows(path: Path, fields: dict[str, tuple[_Check, str]]) -> Iterator[dict[st
             if not isinstance(row, dict) or not isinstance(row.get("case"), str):
                 raise ValueError(f"{at}: expected an object with a case, found {quoted(row, 80)}")
             _check(row, fields, at)
+            before = seen.setdefault(row["case"], number)
+            if before != number:
+                case = quoted(row["case"])
+                raise ValueError(f"{at}: case {case} stands in line {before}, too; expected once")
             yield row

@@ -9,8 +9,10 @@ from pathlib import Path
 from typing import Any
 
 from dwell import ConfigError
+from dwell.arguments import quoted
 from dwell.challenge.rows import check_verdict, read_verdicts
 from dwell.challenge.writing import bundle_of
+from dwell.files import make_folder, open_exclusive
 
 __all__ = ["calibrated_verdict", "run"]
 
@@ -47,6 +49,8 @@ def run(
     verdicts: Path,
     method: Method = calibrated_verdict,
     shard: tuple[int, int] = (0, 1),
+    *,
+    name: str | None = None,
 ) -> Iterator[tuple[str, bool]]:
     """Asks a method about every bundle in a folder, and appends its verdicts to a file.
 
@@ -54,10 +58,11 @@ def run(
 
     Args:
         folder: Bundles, ``NAME.measured``.
-        verdicts: JSON Lines.
+        verdicts: JSON Lines; no other process has the file until all are judged.
         method: Takes a bundle's folder and returns ``kind``, ``sets`` and ``parameters``, as
             :func:`calibrated_verdict`.
         shard: Which of how many parts, from 0; each with a file of its own.
+        name: ``method`` of each verdict; the function's own name by default.
 
     Yields:
         The name of each case, and whether it was asked now.
@@ -65,29 +70,48 @@ def run(
     Raises:
         ConfigError: There are no bundles.
         MeasuredDataError: A bundle cannot be used.
-        ValueError: A verdict, of the file or of the method, lacks a field or has a wrong one.
+        ValueError: A verdict, of the file or of the method, lacks a field or has a wrong one, those
+            of the file are another method's, or another process writes it.
     """
     which, shards = shard
-    names = sorted(path.name.removesuffix(".measured") for path in folder.glob("*.measured"))
-    if not names:
+    cases = sorted(path.name.removesuffix(".measured") for path in folder.glob("*.measured"))
+    if not cases:
         raise ConfigError(f"{folder}: no bundles NAME.measured")
-    known = {row["case"] for row in read_verdicts(verdicts)} if verdicts.exists() else set()
-    _drop_cut_line(verdicts)
-    for name in names[which::shards]:
-        is_new = name not in known
-        if is_new:
-            row = {"case": name, **method(bundle_of(folder, name))}
-            check_verdict(row, f"the verdict on {name}")
-            with open(verdicts, "a", encoding="utf-8") as file:
-                file.write(json.dumps(row, allow_nan=False) + "\n")
-                file.flush()
-                os.fsync(file.fileno())
-        yield name, is_new
+    called = name or str(getattr(method, "__name__", type(method).__name__))
+    make_folder(verdicts.parent)
+    with open_exclusive(verdicts) as file:
+        try:
+            known = _known(verdicts, called)
+            # A last line without an end is what a kill leaves.
+            file.truncate(file.read().rfind(b"\n") + 1)
+            file.seek(0, os.SEEK_END)
+            for one in cases[which::shards]:
+                is_new = one not in known
+                if is_new:
+                    row = {"case": one, **method(bundle_of(folder, one)), "method": called}
+                    check_verdict(row, f"the verdict on {one}")
+                    file.write((json.dumps(row, allow_nan=False) + "\n").encode())
+                    file.flush()
+                    os.fsync(file.fileno())
+                yield one, is_new
+        finally:
+            if file.seek(0, os.SEEK_END) == 0:
+                os.unlink(verdicts)
 
 
-def _drop_cut_line(path: Path) -> None:
-    """Takes away a last line without an end, as a kill leaves it."""
-    if path.exists():
-        with open(path, "r+b") as file:
-            text = file.read()
-            file.truncate(text.rfind(b"\n") + 1)
+def _known(verdicts: Path, name: str) -> set[str]:
+    """The cases that a method has judged.
+
+    Raises:
+        ValueError: A row is of another method, or none.
+    """
+    known = set()
+    for row in read_verdicts(verdicts):
+        if row.get("method") != name:
+            whose = quoted(row["method"]) if row.get("method") else "one that is not named"
+            raise ValueError(
+                f"{verdicts} keeps verdicts of another method: {whose}, not {quoted(name)}; give "
+                "another --out, or the same method again"
+            )
+        known.add(row["case"])
+    return known

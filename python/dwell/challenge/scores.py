@@ -9,6 +9,8 @@ from typing import Any
 
 import numpy as np
 
+from dwell.arguments import quoted
+
 __all__ = ["score", "wilson_interval"]
 
 #: The d' below which rivals are one with the truth, and from which on they are apart.
@@ -69,11 +71,14 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         ``outside_seen``: of all at 10 and more those with any verdict but "nothing". ``coverage``:
         95 % intervals of named right ones that hold the truth; ``median_error`` of their values.
         ``curve``: cases of one effect or fault named right, by d', but for those with a rival that
-        is much nearer to the truth than nothing is. ``judged``: number of cases.
+        is much nearer to the truth than nothing is. ``judged``: number of cases;
+        ``unanswered``: verdicts on other cases than those of the answers, which do not count.
+
+    Raises:
+        ValueError: A case has two verdicts or two different answers, the verdicts are of several
+            methods, or none is on a case of the answers.
     """
-    known = {row["case"]: row for row in answers}
-    # Of several verdicts on one case the last.
-    judged = {row["case"]: row for row in verdicts}
+    known, judged = _by_case(answers, verdicts)
     pairs = [(known[name], row) for name, row in judged.items() if name in known]
     by_kind: dict[str, list[tuple[_Row, _Row]]] = {}
     for answer, verdict in pairs:
@@ -91,6 +96,7 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
     checks = [check for answer, verdict in right for check in _parameters(answer, verdict)]
     return {
         "judged": len(pairs),
+        "unanswered": len(judged) - len(pairs),
         "false_alarms": _share(_names(verdict) for _, verdict in nothing),
         "not_quiet": _share(verdict["kind"] != "nothing" for _, verdict in nothing),
         "wrong_names_of_faults": _share(_is_named_wrong(*row) for row in by_kind.get("fault", [])),
@@ -118,6 +124,31 @@ def score(answers: Iterable[_Row], verdicts: Iterable[_Row]) -> dict[str, Any]:
         "median_error": float(np.median([check["error"] for check in checks])) if checks else None,
         "curve": _curve(single),
     }
+
+
+def _by_case(
+    answers: Iterable[_Row], verdicts: Iterable[_Row]
+) -> tuple[dict[str, _Row], dict[str, _Row]]:
+    known: dict[str, _Row] = {}
+    for row in answers:
+        if known.setdefault(row["case"], row) != row:
+            raise ValueError(f"answers: case {quoted(row['case'])} has two that differ")
+    judged: dict[str, _Row] = {}
+    for row in verdicts:
+        if row["case"] in judged:
+            raise ValueError(f"verdicts: two on case {quoted(row['case'])}; expected one on each")
+        judged[row["case"]] = row
+    methods = sorted({str(row["method"]) for row in judged.values() if row.get("method")})
+    if len(methods) > 1:
+        named = ", ".join(map(quoted, methods))
+        raise ValueError(f"verdicts: of the methods {named}; scores are of one")
+    if judged and judged.keys().isdisjoint(known):
+        raise ValueError(
+            f"verdicts: none of the {len(judged)} is on one of the {len(known)} cases of the "
+            f"answers: the first is on case {quoted(next(iter(judged)))}, the first answer is to "
+            f"{quoted(next(iter(known), None))}"
+        )
+    return known, judged
 
 
 def _hidden(answer: _Row) -> set[str]:

@@ -3,11 +3,18 @@
 from __future__ import annotations
 
 import argparse
+import hashlib
 import json
-from typing import Any
+import os
+from pathlib import Path
+from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard
+from dwell.cli.job_journal import alone, claim, refuse_other
 from dwell.files import atomic_write
+
+if TYPE_CHECKING:
+    from dwell.challenge import ChallengeSettings
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -58,18 +65,55 @@ def _make(args: argparse.Namespace) -> int:
         raise ConfigError(f"--answers is {args.answers}; expected a file outside of {args.out}")
     chosen = {} if args.worlds is None else {"worlds": tuple(args.worlds)}
     settings = ChallengeSettings(cases=args.cases, seed=args.seed, **chosen)
-    progress = ProgressBar()
-    answers, written = [], 0
-    for one, folder, is_new in make(args.out, settings, args.shard):
-        answers.append(json.dumps(one.answer()) + "\n")
-        written += is_new
-        progress((one.number + 1) / settings.cases, folder.name)
-    progress(1.0, "done")
+    job = _job(settings)
+    refuse_other(args.out, job)
     if args.answers:
-        with atomic_write(args.answers) as draft:
-            draft.write_text("".join(answers), "utf-8")
+        _refuse_lost_answers(args.answers, settings, args.shard)
+    claim(args.out, job)
+    with alone(args.out, args.shard):
+        progress = ProgressBar()
+        answers, written = [], 0
+        for one, folder, is_new in make(args.out, settings, args.shard):
+            answers.append(json.dumps(one.answer()) + "\n")
+            written += is_new
+            progress((one.number + 1) / settings.cases, folder.name)
+        progress(1.0, "done")
+        if args.answers:
+            with atomic_write(args.answers) as draft:
+                draft.write_text("".join(answers), "utf-8")
     print(f"{written} of {len(answers)} bundles written to {args.out}")
     return 0
+
+
+def _job(settings: ChallengeSettings) -> dict[str, Any]:
+    """What a folder of bundles is begun with; the number of cases may be another later.
+
+    The seed tells what is hidden, so that those who judge see that it is another one, and no more.
+    """
+    seed = hashlib.blake2b(f"dwell challenge {settings.seed}".encode(), digest_size=8)
+    worlds = [*settings.worlds]
+    return {"command": "challenge make", "worlds": worlds, "seed (a hash)": seed.hexdigest()}
+
+
+def _refuse_lost_answers(file: Path, settings: ChallengeSettings, shard: tuple[int, int]) -> None:
+    """Refuses to write over answers to other cases.
+
+    Raises:
+        ValueError: There are some, or what stands there are no answers.
+    """
+    from dwell.challenge import read_answers
+    from dwell.challenge.cases import name_of
+
+    if not os.path.lexists(file):
+        return
+    which, shards = shard
+    ours = {name_of(number, settings) for number in range(which, settings.cases, shards)}
+    others = [row["case"] for row in read_answers(file) if row["case"] not in ours]
+    if others:
+        raise ValueError(
+            f"{file} keeps {len(others)} answers to cases that are not made now, as {others[0]}: "
+            "of another seed, other worlds, another shard or more cases; give another --answers"
+        )
 
 
 def _run(args: argparse.Namespace) -> int:
@@ -83,7 +127,7 @@ def _run(args: argparse.Namespace) -> int:
     progress = ProgressBar()
     done = new = 0
     method = BASELINES.get(args.method, calibrated_verdict)
-    for name, is_new in judge(args.bundles, args.out, method, args.shard):
+    for name, is_new in judge(args.bundles, args.out, method, args.shard, name=args.method):
         done, new = done + 1, new + is_new
         progress(done / expected, name)
     print(f"{new} of {done} bundles judged; verdicts in {args.out}")
@@ -99,7 +143,11 @@ def _score(args: argparse.Namespace) -> int:
     if args.json:
         print_json(found)
         return 0
-    print(f"{found['judged']} cases judged")
+    others = found["unanswered"]
+    print(
+        f"{found['judged']} cases judged"
+        + (f"; {others} verdicts on other cases left out" if others else "")
+    )
     for name, value in found.items():
         if isinstance(value, dict):
             print(_line(name, value))

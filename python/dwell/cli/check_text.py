@@ -9,6 +9,7 @@ from collections import Counter
 from collections.abc import Iterator
 from typing import TYPE_CHECKING, Any, Literal
 
+from dwell import ConfigError, DwellError
 from dwell.arguments import quoted
 from dwell.cli.common import decimal, path, print_json
 
@@ -33,7 +34,8 @@ def configure(parser: argparse.ArgumentParser) -> None:
     parser.add_argument("house", metavar="HOUSE")
     texts = parser.add_argument(
         "texts",
-        metavar="TEXT",
+        # As errors call it.
+        metavar="TEXT (or --file FILE)",
         nargs="+",
         help="a caption or description, whose claims are judged one by one, or a question",
     )
@@ -57,6 +59,11 @@ def configure(parser: argparse.ArgumentParser) -> None:
         help="with --view: the text tells of the house, and only sides are those of the view",
     )
     parser.add_argument("--json", action="store_true", help="one JSON object on standard output")
+    # Of arguments of which one is enough argparse knows among options alone.
+    parser.usage = (
+        "%(prog)s [-h] HOUSE [TEXT ...] [--file FILE] [--view VIEW] [--of-house] [--json]\n"
+        "  with a TEXT, a FILE, or both"
+    )
 
 
 def _file_instead_of(texts: argparse.Action) -> type[argparse.Action]:
@@ -83,8 +90,11 @@ def run(args: argparse.Namespace) -> int:
     """Judges every text; 1 where something was not understood."""
     rows, counts = [], Counter[str]()
     worlds = _Worlds(args)
-    for given in [*({"text": text} for text in args.texts or ()), *_of_file(args.file)]:
-        row = _judged(worlds, args, given)
+    for at, given in _texts(args):
+        try:
+            row = _judged(worlds, args, given)
+        except (DwellError, ValueError) as error:
+            raise ConfigError(f"{at}{error}") from None
         rows.append(row)
         counts.update(claim["status"] for claim in row["claims"])
         if not args.json:
@@ -143,24 +153,39 @@ def _viewer(world: World, view: str) -> dict[str, Any]:
     return {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
 
 
-def _of_file(file: Path | None) -> Iterator[dict[str, Any]]:
-    """The texts of a file."""
-    from dwell.files import lines, open_file, parse_json
+def _texts(args: argparse.Namespace) -> Iterator[tuple[str, dict[str, Any]]]:
+    """All texts, each with what errors of it begin with."""
+    blank = [text for text in args.texts or () if not text.strip()]
+    if blank:
+        raise ValueError(f"TEXT is {quoted(blank[0])}; expected a sentence")
+    for text in args.texts or ():
+        yield "", {"text": text}
+    if args.file is not None:
+        found = False
+        for at, row in _of_file(args.file):
+            found = True
+            yield f"{at}: ", row
+        if not found:
+            raise ValueError(f"{os.fspath(args.file)}: no text; expected one a line")
 
-    if file is None:
-        return
+
+def _of_file(file: Path) -> Iterator[tuple[str, dict[str, Any]]]:
+    """The texts of a file, each with its place."""
+    from dwell.files import decoded, lines, open_file, parse_json
+
     with open_file(file) as opened:
         for number, line in enumerate(lines(opened, file), start=1):
-            if not line.strip():
-                continue
             at = f"{os.fspath(file)} line {number}"
+            text = decoded(line, at).strip()
+            if not text:
+                continue
             if file.suffix.lower() != ".jsonl":
-                yield {"text": line.decode("utf-8", "replace").strip()}
+                yield at, {"text": text}
                 continue
             row = parse_json(line, at)
             if not isinstance(row, dict) or not isinstance(row.get("text"), str):
                 raise ValueError(f"{at}: expected an object with a text, found {quoted(row, 80)}")
-            yield row
+            yield at, row
 
 
 def _judged(worlds: _Worlds, args: argparse.Namespace, given: dict[str, Any]) -> dict[str, Any]:
@@ -182,6 +207,8 @@ def _judged(worlds: _Worlds, args: argparse.Namespace, given: dict[str, Any]) ->
 
 def _say(row: dict[str, Any]) -> None:
     """Prints each claim with its verdict, in colour on a terminal."""
+    if not row["claims"]:
+        print(f"{quoted(row['text'], 80)} claims nothing.")
     is_terminal = getattr(sys.stdout, "stream", sys.stdout).isatty()
     for claim in row["claims"]:
         verdict = _verdict(claim)

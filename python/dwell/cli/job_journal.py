@@ -49,6 +49,30 @@ def claim(out: Path, dataset: dict[str, Any]) -> None:
         refuse_other(out, dataset)
 
 
+@contextlib.contextmanager
+def alone(out: Path, shard: tuple[int, int]) -> Iterator[None]:
+    """Keeps other processes from a shard of the folder ``out``, which is there.
+
+    Raises:
+        ValueError: One makes it.
+    """
+    which, shards = shard
+    path = out / f".shard-{which}-of-{shards}.lock"
+    try:
+        lock = open_exclusive(path)
+    except ValueError:
+        part = f"shard {which}/{shards} of {out}" if shards > 1 else os.fspath(out)
+        raise ValueError(
+            f"{part} is being made by another process; wait for its end, or give another --out"
+        ) from None
+    with lock:
+        try:
+            yield
+        finally:
+            with contextlib.suppress(OSError):
+                os.unlink(path)
+
+
 def refuse_other(out: Path, dataset: dict[str, Any]) -> None:
     """Refuses a folder that :func:`claim` would, and leaves it as it is.
 

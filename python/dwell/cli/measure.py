@@ -8,6 +8,7 @@ import sys
 from pathlib import Path
 from typing import Any
 
+from dwell.arguments import allowed_values, quoted
 from dwell.cli.common import ProgressBar, path, print_json
 
 _ASKED = ""
@@ -93,6 +94,9 @@ def _init(args: argparse.Namespace) -> int:
         raise ValueError("--init prints a map and writes no bundle; leave out --map and --out")
     kind, files = args.init or None, list(args.files)
     if kind is not None and kind not in KINDS:
+        if not Path(kind).exists():
+            told = f"--init is {quoted(kind)}, which is no file that is there and no kind"
+            raise ValueError(f"{told}; of kinds {allowed_values(kind, KINDS)}")
         # The first of the files, which stand behind the option.
         files.insert(0, Path(kind))
         kind = None

@@ -17,7 +17,7 @@ from dwell.cli.common import (
     shard,
     workers,
 )
-from dwell.cli.job_journal import claim, refuse_other
+from dwell.cli.job_journal import alone, claim, refuse_other
 
 #: Houses that were skipped and are told of on standard error.
 _MOST_TOLD = 10
@@ -94,12 +94,13 @@ def _make(args: argparse.Namespace) -> int:
     which, shards = args.shard
     todo = len(range(which, len(houses), shards))
     bar, views, done, started = ProgressBar(), 0, 0, time.perf_counter()
-    for _, name, made in make(
-        houses, args.out, settings, shard=args.shard, threads=args.threads, on_skip=skip
-    ):
-        views += made
-        done += 1
-        bar(done / todo, name)
+    with alone(args.out, args.shard):
+        for _, name, made in make(
+            houses, args.out, settings, shard=args.shard, threads=args.threads, on_skip=skip
+        ):
+            views += made
+            done += 1
+            bar(done / todo, name)
     seconds = time.perf_counter() - started
     if len(skipped) > _MOST_TOLD:
         print(f"dwell views: skipped {len(skipped) - _MOST_TOLD} more houses", file=sys.stderr)

@@ -353,8 +353,8 @@ def _refuse_settings(header: Header) -> None:
         ConfigError: The message names the field.
     """
     task = task_of(header.task)
-    if header.task_version != task["version"] or task["min_agents"] > 1:
-        # Environments refuse these tasks themselves, whatever the settings.
+    if header.task_version != task["version"]:
+        # Environments refuse them themselves, whatever the settings.
         return
     known = [row["name"] for row in task["settings"]]
     unknown = [name for name in header.task_settings if name not in known]

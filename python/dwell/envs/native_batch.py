@@ -16,6 +16,7 @@ from dwell.envs.asking import AskingActions
 from dwell.envs.env_pool import PreparedEnv, add_heads, begun_as_stated
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
+from dwell.envs.sensor_errors import with_sensor
 from dwell.envs.silence import SWS, silence_measures, success_when_silent
 from dwell.envs.spaces import SensorSpace, shareable, specs
 from dwell.heads import Head
@@ -39,7 +40,10 @@ class NativeBatch:
         """Builds the environments, one for each house of ``houses``; agents may wear ``heads``."""
         for house in houses:
             add_heads(house, heads)
-        self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
+        try:
+            self.batch = _native.Batch([house.native for house in houses], config, threads, overlap)
+        except ConfigError as error:
+            raise with_sensor(error, houses[0], config) from None
         #: How many agents act in each environment; the rows of actions and answers are those of the
         #: first environment's agents, then those of the second's.
         self.agents = len(self.batch.agents())

@@ -28,6 +28,7 @@ from dwell.arguments import (
     to_json,
 )
 from dwell.envs.info_keys import EPISODE_KEYS
+from dwell.episodes import task_of
 from dwell.house import House
 from dwell.plugin_parts import factory
 from dwell.rewards import Reward
@@ -96,8 +97,11 @@ def split(
         make_task = factory("task", task, Task, settings)
         one = make_task()
         task, settings = text("task.base", one.base), one.base_settings
+        task_of(task, f"{type(one).__name__}.base")
         # Also those that are not used: whoever writes a task shall see that they are none.
         own_sensors = _sensors(f"{type(one).__name__}.sensors", one.sensors)
+    else:
+        task_of(task)
     names, own = _sensors("sensors", sensors)
     if sensors is None and own_sensors is not None:
         names, own = own_sensors

@@ -10,6 +10,7 @@ from dwell import ConfigError, UsageError, _native
 from dwell.arguments import integer_in_range, quoted, refuse_unknown, text
 from dwell.envs.config import EnvSettings
 from dwell.envs.python_tasks import TaskChoice
+from dwell.episodes import several_agents
 from dwell.messages import with_short_words
 from dwell.plugin_parts import factory
 from dwell.tasks import Task
@@ -30,8 +31,8 @@ def refuse_several(task: str, **_: object) -> NoReturn:
         UsageError: Always; it says what has the task.
     """
     raise UsageError(
-        f"{task} is a task of several agents, and gymnasium.make has environments of one; make it "
-        f"with dwell.pettingzoo.parallel_env({task!r}, ...), env or vector_env"
+        f"{task} is a task of several agents, and gymnasium.make has environments of one; "
+        f"{several_agents(task)}"
     )
 
 

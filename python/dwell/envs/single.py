@@ -16,7 +16,7 @@ from gymnasium.wrappers import TimeLimit
 from numpy.typing import NDArray
 
 from dwell import ConfigError, UsageError, _native
-from dwell.arguments import integer_in_range, kept, mapping, quoted, refuse_unknown
+from dwell.arguments import integer_in_range, kept, quoted, refuse_unknown, reset_options
 from dwell.camera import Camera, camera_settings
 from dwell.envs.action_modes import (
     ActionForm,
@@ -42,6 +42,7 @@ from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.info_keys import step_info
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import PythonTask, RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.sensor_errors import refuse_blind
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.heads import Head
 from dwell.object_state_api import agent_states
@@ -205,6 +206,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         )
         self._masks = masked_form(action_mask, self._actions)
         self._measures = self._runner.measures
+        refuse_blind(self._runner.space)
         self.observation_space = self._runner.space
         self.action_space = self._actions.space
 
@@ -283,11 +285,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         self, options: dict[str, Any] | None
     ) -> tuple[int | None, int | None, dict[str, Any] | None]:
         """House, seed and what is stated of the episode that is requested, each where it is."""
-        options = {} if options is None else mapping("options", options)
-        if unknown := sorted(set(options) - {"house", "episode_id", "episode"}):
-            raise ConfigError(
-                f"options: no {unknown[0]!r}; allowed are house, episode_id and episode"
-            )
+        options = reset_options(options, "house", "episode_id", "episode")
         if "house" in options and "episode_id" in options:
             raise ConfigError(
                 "options: house and episode_id; an episode has its own house, give one"

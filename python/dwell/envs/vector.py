@@ -42,6 +42,7 @@ from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.sensor_errors import refuse_blind
 from dwell.envs.single import (
     RENDER_CAMERA,
     DwellEnv,
@@ -228,6 +229,7 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._masks = masked_form(action_mask, self._actions)
         #: Keys of a step's answer that become infos.
         self._info_keys = (*INFO_KEYS, *self._runner.measures)
+        refuse_blind(self._runner.space)
         self.single_observation_space = self._runner.space
         self.single_action_space = self._actions.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)

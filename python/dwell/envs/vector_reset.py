@@ -9,7 +9,13 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError
-from dwell.arguments import integer_in_range, mapping, quoted, refuse_no_array, sequence_items
+from dwell.arguments import (
+    integer_in_range,
+    quoted,
+    refuse_no_array,
+    reset_options,
+    sequence_items,
+)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -38,9 +44,7 @@ class VectorReset:
         Raises:
             ConfigError: There is no such option, or one is not for each environment.
         """
-        options = {} if options is None else mapping("options", options)
-        if unknown := sorted(set(options) - {"reset_mask", "episode_id"}):
-            raise ConfigError(f"options: no {unknown[0]!r}; allowed are reset_mask and episode_id")
+        options = reset_options(options, "reset_mask", "episode_id")
         which = _mask(options.get("reset_mask"), num_envs)
         seeds = _seeds(seed, num_envs)
         return cls(which, seeds, _episode_ids(options.get("episode_id"), which))

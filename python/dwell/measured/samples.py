@@ -17,7 +17,7 @@ from dwell.measured.maps import Job, Map, choice, require
 from dwell.measured.places import Place
 from dwell.measured.readers import Row
 from dwell.measured.tables import FILE_COLUMN, MeasuredTable, names_of
-from dwell.measured.units import ColumnUnits
+from dwell.measured.units import ColumnUnits, Unit
 
 Array = NDArray[np.float64]
 #: Time from sample to sample, where it need not be even, from which on it is a gap, s.
@@ -163,7 +163,8 @@ class SampleReader:
             names.append(held.column)
         self.table.has([*dict.fromkeys([*names, *(own.column for own in fields)])])
         units = ColumnUnits(part, at)
-        self._time = units.unit(self.clock, "time")
+        #: What one number of the clock is, s.
+        self.clock_unit = units.unit(self.clock, "time")
         self._units = [units.unit(own.column, own.dimension) for own in fields]
         self._held = held
         self._held_unit = None if held is None else units.unit(held.column, held.dimension)
@@ -178,6 +179,11 @@ class SampleReader:
                 '; or write "cleaning": {"gaps": "split"} in the map\'s table, which makes an '
                 "episode of each part"
             )
+
+    def unit_of(self, column: str) -> Unit:
+        """The unit of a field's column."""
+        found = zip(self.fields, self._units, strict=True)
+        return next(unit for own, unit in found if own.column == column)
 
     def read(
         self,
@@ -210,7 +216,7 @@ class SampleReader:
         episodes = self.cleaning.without_repeats(episodes, self.table.name, self.job.notes)
         if self._from_first:
             episodes = [_from_first(episode) for episode in episodes]
-        seconds = self._time.factor
+        seconds = self.clock_unit.factor
         longest = cleaning.Longest(_LONGEST_S if step_s is None else 1.5 * step_s, seconds)
         episodes = self.cleaning.parts(episodes, longest, fewest, self.job.notes)
         for episode in episodes:
@@ -226,7 +232,7 @@ class SampleReader:
         value = self._held_unit.one(value)
         is_new = not rows or rows[-1][1] != value or self.cleaning.unsorted is not None
         if value == value and is_new:
-            rows.append((told - self._time.zero, value, place))
+            rows.append((told - self.clock_unit.zero, value, place))
 
     def _columns(self) -> list[str]:
         return [own.column for own in self.fields]
@@ -266,7 +272,7 @@ class SampleReader:
             if lost:
                 missing[(*dict.fromkeys(lost),)] += 1
                 continue
-            own.times.append(told - self._time.zero)
+            own.times.append(told - self.clock_unit.zero)
             own.values.extend(values)
             own.numbers.append(own.seen - 1)
             own.rows.extend((files[place.path], place.row))

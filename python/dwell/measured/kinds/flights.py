@@ -6,6 +6,7 @@ from typing import Any
 
 import numpy as np
 
+from dwell.measured import falls
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import TABLE, Job, Map, require, require_filled
@@ -114,6 +115,13 @@ def _write(job: Job) -> dict[str, Any]:
                 f"{episode.place(0)}: episode {episode.name!r} has no number in column {column!r}; "
                 "leave the episode or the channel out"
             )
+    if "y" in names:
+        in_engine = axes if turned else None
+        one = next(iter(bodies.values()))
+        of = {name: bodies[body] for name, body in body_of.items()}
+        note = _fall_note(reader, samples.episodes, names, in_engine, of, one)
+        if note is not None:
+            job.notes.append(note)
     origin = {"t_s": [reader.clock], "episode": ["/".join(reader.episode)], "value": columns}
     origin |= {name: [column] for name, column in zip(names, columns, strict=True)}
     with job.draft.table("trajectory.csv", "episode,t_s,entity,channel,value", origin) as write:
@@ -149,6 +157,45 @@ def _write(job: Job) -> dict[str, Any]:
     write_manifest(job, KIND.version, {"bodies": list(bodies.values())}, {"channels": told})
     write_episodes(job, listing(samples.episodes))
     return counted(job, samples.rows, len(samples.episodes), left_out)
+
+
+def _fall_note(
+    reader: SampleReader,
+    episodes: list[Episode],
+    names: list[str],
+    axes: Axes | None,
+    body_of: dict[str, Map],
+    everyone: Map,
+) -> str | None:
+    """What there is to say of how things fall; ``axes``: where channels are the user's axes."""
+    places = [k for k, name in enumerate(names) if _CHANNELS[name][0] == "length"]
+    height = names.index("y")
+    column = reader.fields[height if axes is None else axes.order[1]].column
+    flights = []
+    for episode in episodes:
+        seen = episode.values[:, places]
+        body = body_of.get(episode.source, everyone)
+        flights.append(
+            falls.Flight(
+                episode.times * reader.clock_unit.factor,
+                seen if axes is None else axes.vectors(seen),
+                float(body["mass_kg"]),
+                float(body["radius_m"]),
+            )
+        )
+    mapping, units = reader.job.mapping, reader.part.get("units") or {}
+    clock = units.get(reader.clock)
+    told = falls.Told(
+        heights=column,
+        height_axis=places.index(height),
+        metres=abs(reader.unit_of(column).factor),
+        clock=reader.clock,
+        seconds=reader.clock_unit.factor,
+        frames=isinstance(clock, dict) and "per_second" in clock,
+        g_m_s2=mapping.get("g_m_s2"),
+        environment=mapping.get("environment") or {},
+    )
+    return falls.check(reader.table.name, flights, told)
 
 
 def _unlike_noise(episodes: list[Episode], fields: list[Field]) -> str | None:
