@@ -309,7 +309,7 @@ fn step(tree: &Tree) -> Option<RequestStep> {
             RequestStep::Do {
                 verb: "pick_up".to_owned(),
                 object: object
-                    .with_modifier(Modifier::new("in", [Phrase::Pronoun]))
+                    .with_modifier(Modifier::new("belongs_to", [Phrase::Pronoun]))
                     .into(),
             }
         }

@@ -100,7 +100,9 @@ impl ProcThorReader<'_> {
         let (middle, turned) = (point(position), rotation(object.rotation));
         if !is_valid_position(middle) || !turned.is_finite() {
             let reason = format!(
-                "it is at {middle} (m): position and rotation (degrees) need x, y and z, the position within 10000 m"
+                "it is no place in a house: position (m) and rotation (degrees) need x, y and z, at most 10000 m from the origin; \
+                 found {:?}",
+                middle.to_array()
             );
             return self.warn(at, WarningKind::BadTransform { reason });
         }
