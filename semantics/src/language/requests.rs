@@ -108,13 +108,13 @@ fn one_of_the_step(condition: &mut Clause, then: &[RequestStep]) {
     let Clause::Exists(Phrase::Described(one)) = condition else {
         return;
     };
-    let object = match then.first() {
-        Some(
-            RequestStep::Do { object, .. }
-            | RequestStep::Put { object, .. }
-            | RequestStep::Bring { object, .. },
-        ) => object,
-        _ => return,
+    let Some(
+        RequestStep::Do { object, .. }
+        | RequestStep::Put { object, .. }
+        | RequestStep::Bring { object, .. },
+    ) = then.first()
+    else {
+        return;
     };
     if let Phrase::Described(object) = object
         && **one == Description::new(Quantifier::Some, Noun::SameNoun)
