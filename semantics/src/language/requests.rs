@@ -231,14 +231,14 @@ fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
     })
 }
 
-/// "Look in the cupboard for a cup."
-fn find_there(object: &Tree, there: Modifier) -> Option<RequestStep> {
+/// "Look in the cupboard for a cup": what is acted on, with where it is.
+fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<RequestStep> {
     let Phrase::Described(object) = phrase(object)? else {
         return None;
     };
     Some(RequestStep::Do {
-        verb: "find".to_owned(),
-        object: object.with_modifier(there).into(),
+        verb: verb.to_owned(),
+        object: object.with_modifier(added).into(),
     })
 }
 
@@ -286,32 +286,20 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("turn_right", []) => RequestStep::Turn(TurnDirection::Right),
         ("turn_around", []) => RequestStep::Turn(TurnDirection::Around),
         ("do_from_room", [verb, object, from]) => {
-            let Phrase::Described(description) = phrase(object)? else {
-                return None;
-            };
             let in_room = Modifier::new("in_room", [room(from)?]);
-            RequestStep::Do {
-                verb: entry_id(verb)?,
-                object: description.with_modifier(in_room).into(),
-            }
+            act_on_modified(&entry_id(verb)?, object, in_room)?
         }
-        ("look_in_for", [relation, place, object]) => find_there(
+        ("look_in_for", [relation, place, object]) => act_on_modified(
+            "find",
             object,
             Modifier::new(&entry_id(relation)?, [phrase(place)?]),
         )?,
         ("look_inside_for", [object]) => {
-            find_there(object, Modifier::new("in", [Phrase::Pronoun]))?
+            act_on_modified("find", object, Modifier::new("in", [Phrase::Pronoun]))?
         }
         ("take_out", [object]) => {
-            let Phrase::Described(object) = phrase(object)? else {
-                return None;
-            };
-            RequestStep::Do {
-                verb: "pick_up".to_owned(),
-                object: object
-                    .with_modifier(Modifier::new("belongs_to", [Phrase::Pronoun]))
-                    .into(),
-            }
+            let source = Modifier::new("belongs_to", [Phrase::Pronoun]);
+            act_on_modified("pick_up", object, source)?
         }
         ("leave", [object]) => refrain("pick_up", object)?,
         ("do_close_behind", [object]) => act("close", object)?,
