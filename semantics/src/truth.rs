@@ -44,6 +44,8 @@ pub enum UndecidedReason {
     TooClose,
     /// "It" stands for nothing that was named before.
     NoAntecedent,
+    /// Its measures lie between a word and its opposite.
+    Borderline,
     /// It is about parts of a thing, such as the doors of a wardrobe, which a scene does not tell apart.
     PartOfThing,
 }
@@ -73,6 +75,7 @@ impl UndecidedReason {
             Self::TooFew => "There are not so many of them.",
             Self::TooClose => "Two of them are too close in the order to be told apart.",
             Self::NoAntecedent => "Nothing was named before that \"it\" could stand for.",
+            Self::Borderline => "Its measures lie between the word and its opposite.",
             Self::PartOfThing => "It is about parts of a thing, which are not told apart here.",
         }
     }

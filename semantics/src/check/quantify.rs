@@ -75,6 +75,23 @@ impl Checker<'_> {
                 }
                 judged
             })),
+            Quantifier::All(number) => {
+                let sure = extension.fits.len();
+                let possible = sure + extension.undecided.len();
+                let number = number as usize;
+                if number < sure || number > possible {
+                    return WitnessedTruth::without_witnesses(Truth::False);
+                }
+                let all = WitnessedTruth::all(fitting.map(|(term, _)| with(term)));
+                // Which of them fit is open; where the clause holds of all of them, only their number is.
+                match extension.undecided.first() {
+                    Some((_, reason)) if sure != possible => WitnessedTruth {
+                        truth: Truth::Undecided(*reason),
+                        ..all
+                    },
+                    _ => all,
+                }
+            }
             Quantifier::No => WitnessedTruth::all(fitting.map(|(term, undecided)| {
                 let mut judged = with(term).negated();
                 if let Some(reason) = undecided {

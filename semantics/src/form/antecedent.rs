@@ -2,7 +2,7 @@
 
 use super::mention::{
     exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular, may_be_one,
-    meets_selectional_restriction, subject_with_predicate, topic_of,
+    meets_selectional_restriction, subject_with_predicate, subject_without_predicate, topic_of,
 };
 use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
 use super::{
@@ -214,7 +214,15 @@ impl Resolver {
                     self.clause(clause);
                 }
             }
-            Clause::Now(inner) | Clause::Not(inner) => self.clause(inner),
+            Clause::Now(inner) => self.clause(inner),
+            Clause::Not(inner) => {
+                let first = self.mentions.len();
+                self.clause(inner);
+                // "If one of the lamps is not on, switch it on": a lamp that is not on.
+                if let Some(subject) = self.mentions.get_mut(first) {
+                    subject.with_said = subject_without_predicate(inner);
+                }
+            }
             one => {
                 let verb = match &*one {
                     Clause::Is {
@@ -235,9 +243,22 @@ impl Resolver {
                 {
                     self.inherit_group_modifiers(own, first);
                 }
-                if let Clause::Holds { arguments, .. } = &*one {
+                if let Clause::Holds {
+                    predicate,
+                    arguments,
+                } = &*one
+                {
                     for mention in &mut self.mentions[first..] {
                         mention.is_argument = arguments.contains(&mention.phrase);
+                    }
+                    // "The blue thing is a cup, and it is empty": the blue thing is.
+                    if predicate == Modifier::IDENTICAL {
+                        let subject = arguments.first();
+                        let mut at = 0;
+                        self.mentions.retain(|mention| {
+                            at += 1;
+                            at <= first || Some(&mention.phrase) == subject
+                        });
                     }
                 }
                 if let Some(subject) = self.mentions.get_mut(first) {

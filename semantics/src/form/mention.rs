@@ -39,6 +39,35 @@ pub(super) fn subject_with_predicate(clause: &Clause) -> Option<Description> {
     Some(subject)
 }
 
+/// A subject of indefinite number with what its clause denies of it: "a lamp is not on".
+pub(super) fn subject_without_predicate(clause: &Clause) -> Option<Description> {
+    let subject = match clause {
+        Clause::Holds { arguments, .. } => arguments.first()?,
+        Clause::Is { subject, .. } => subject,
+        _ => return None,
+    };
+    let denied = match clause {
+        Clause::Holds {
+            predicate,
+            arguments,
+        } => Modifier::new(predicate, arguments.get(1..)?),
+        Clause::Is {
+            quality: Quality::State(state),
+            ..
+        } => Modifier::new(state, []),
+        _ => return None,
+    };
+    match subject {
+        Phrase::Described(own) if is_indefinite_singular(own) => {
+            Some(Description::clone(own).with_modifier(Modifier {
+                negated: true,
+                ..denied
+            }))
+        }
+        _ => None,
+    }
+}
+
 /// Returns whether a description is of any room: that of "in the corner".
 pub(super) fn is_any_room(own: &Description) -> bool {
     let any = Noun::Room(Noun::ANY_ROOM.to_owned());
@@ -46,7 +75,7 @@ pub(super) fn is_any_room(own: &Description) -> bool {
 }
 
 /// The thing that a step is about.
-pub(super) fn topic_of(step: &RequestStep) -> Option<&Phrase> {
+pub(crate) fn topic_of(step: &RequestStep) -> Option<&Phrase> {
     match step {
         RequestStep::GoTo(_) | RequestStep::Leave(_) | RequestStep::Turn(_) => None,
         RequestStep::Do { object, .. }

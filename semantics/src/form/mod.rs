@@ -5,6 +5,7 @@
 
 mod antecedent;
 mod clause;
+mod identity;
 mod mention;
 mod own_parts;
 mod phrase;
@@ -13,6 +14,7 @@ mod request;
 mod visit;
 
 pub use clause::{Clause, Quality, RoomSurface, RoomSurfaceKind};
+pub(crate) use mention::topic_of;
 pub use phrase::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier};
 pub use question::{AttributeKind, Question};
 pub use request::{RequestStep, TurnDirection};

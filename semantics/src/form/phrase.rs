@@ -13,6 +13,8 @@ pub enum Quantifier {
     The,
     /// All of them: "every chair"; true where none fits.
     Every,
+    /// All of exactly this number: "both chairs", "all three chairs"; false where another number fits.
+    All(u32),
     /// None: "no chair".
     No,
     /// This number: "two chairs".

@@ -1,6 +1,6 @@
 //! Questions for those of several clauses that are true: forms to trees, and trees to forms.
 
-use super::from_tree::{atomic_clause, entry_id};
+use super::from_tree::{atomic_clause, entry_id, parts};
 use super::phrases::{nominal, phrase};
 use super::questions::question;
 use super::sets;
@@ -18,8 +18,28 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             all
         }
         ("alternatives_of", [subject, one, other]) => {
+            // "On the left or to the right of the chair" is of the chair, both.
+            let is_side = |said: &Tree| matches!(parts(said), Some(("vp_side", _)));
+            if is_side(one) != is_side(other) {
+                return None;
+            }
             let subject = phrase(subject)?;
             vec![clause(subject.clone(), one)?, clause(subject, other)?]
+        }
+        ("alternatives_of_three", [subject, one, second, third]) => {
+            let subject = phrase(subject)?;
+            let said = [one, second, third].into_iter();
+            said.map(|said| clause(subject.clone(), said))
+                .collect::<Option<_>>()?
+        }
+        ("alternatives_stands", [subject, _, one, other]) => {
+            let subject = phrase(subject)?;
+            vec![clause(subject.clone(), one)?, clause(subject, other)?]
+        }
+        ("which_is_farther", [of, one, other]) => {
+            let mut clauses = closer(&phrase(of)?, [phrase(one)?, phrase(other)?]);
+            clauses.reverse();
+            clauses
         }
         ("alternatives_landmark", [subject, relation, one, other]) => {
             related(subject, [relation; 2], [one, other])?
@@ -76,12 +96,10 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             }
             clauses
         }
-        ("alternatives_made_of", [subject, one, other]) => {
-            qualities(subject, [one, other], Quality::Material)?
+        ("alternatives_made_of" | "alternatives_made_of_three", [subject, words @ ..]) => {
+            qualities(subject, words, Quality::Material)?
         }
-        ("alternatives_color", [subject, one, other]) => {
-            qualities(subject, [one, other], Quality::Color)?
-        }
+        ("alternatives_color", [subject, words @ ..]) => qualities(subject, words, Quality::Color)?,
         _ => return None,
     })
 }
@@ -140,11 +158,11 @@ fn comparison_both_ways(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<C
 
 fn qualities(
     subject: &Tree,
-    words: [&Tree; 2],
+    words: &[Tree],
     quality: impl Fn(String) -> Quality,
 ) -> Option<Vec<Clause>> {
     let subject = phrase(subject)?;
-    let mut clauses = Vec::with_capacity(2);
+    let mut clauses = Vec::with_capacity(words.len());
     for word in words {
         clauses.push(Clause::Is {
             subject: subject.clone(),

@@ -46,7 +46,7 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
         ("claim", [inner]) => Form::Claim(clause(inner)?),
         ("request", [inner]) => Form::Request(requests::plan(inner)?),
         ("ask", [inner]) => Form::Question(questions::question(inner)?),
-        ("ask_that", [inner]) => Form::Question(Question::Whether(clause(inner)?)),
+        ("ask_that" | "ask_tag", [inner]) => Form::Question(Question::Whether(clause(inner)?)),
         ("ask_indirect", [inner]) => Form::Question(questions::indirect_question(inner)?),
         ("request_ask", [first, inner]) => Form::Several(vec![
             Form::Request(requests::plan(first)?),
@@ -195,6 +195,10 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
                 vec![phrase(subject)?, existence::items_from_tree(load)?],
             ),
         ]),
+        // "What hangs from the ceiling is a lamp."
+        ("what_says_is", [said, item]) => {
+            verb_phrases::clause(existence::item_from_tree(item)?, said)?
+        }
         ("exists_says", [subject, said]) => {
             let Phrase::Described(own) = phrase(subject)? else {
                 return None;
@@ -222,10 +226,13 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
                 vec![phrase(subject)?, existence::items_from_tree(items)?],
             )
         }
-        ("fronted", [front, inner]) => fronted(
-            existence::fronted_modifiers_from_tree(front)?,
-            possibly_negated_clause(inner)?,
-        )?,
+        ("fronted", [front, inner]) => {
+            let clause = possibly_negated_clause(inner)?;
+            // "On the bed is one cushion near the lamp" has no subject before its place.
+            let is_existence = matches!(clause, Clause::Exists(_));
+            (!is_existence || parts(inner)?.0 == "stands").then_some(())?;
+            fronted(existence::fronted_modifiers_from_tree(front)?, clause)?
+        }
         ("exists_all", [items, quality]) => {
             let all = Description::new(Quantifier::Every, Noun::SameThings);
             Clause::All(vec![
@@ -356,9 +363,15 @@ fn is(subject: Phrase, quality: &Tree) -> Option<Clause> {
 
 /// "On the table, a lamp is between two cups": the place belongs to the subject.
 fn fronted(modifiers: Vec<Modifier>, mut clause: Clause) -> Option<Clause> {
+    // "In the study, the clock hangs by the door": the clock in the study is hanging, and it is by the door.
+    if let Clause::All(clauses) = clause {
+        let all = clauses.into_iter();
+        let all = all.map(|one| fronted(modifiers.clone(), one));
+        return all.collect::<Option<_>>().map(Clause::All);
+    }
     let subject = match &mut clause {
         Clause::Holds { arguments, .. } => arguments.first_mut()?,
-        Clause::Is { subject, .. } => subject,
+        Clause::Is { subject, .. } | Clause::Exists(subject) => subject,
         _ => return None,
     };
     let Phrase::Described(own) = subject else {

@@ -22,6 +22,7 @@ mod rooms;
 mod say;
 mod sentences;
 mod sets;
+mod step_groups;
 mod to_tree;
 mod verb_phrases;
 

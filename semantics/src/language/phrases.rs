@@ -48,8 +48,11 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some" | "i_the_plural", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every" | "the_plural" | "the_pair_of", [noun])
-        | ("every_counted" | "i_every_counted", [_, noun]) => of(Quantifier::Every, noun),
+        ("every" | "i_every" | "the_plural" | "the_pair_of", [noun]) => of(Quantifier::Every, noun),
+        ("both" | "i_both", [noun]) => of(Quantifier::All(2), noun),
+        ("every_counted" | "i_every_counted", [count, noun]) => {
+            of(Quantifier::All(number(count)?), noun)
+        }
         ("no", [noun]) => of(Quantifier::No, noun),
         ("exactly_one", [noun]) => of(Quantifier::Exactly(1), noun),
         ("exactly" | "i_exactly", [count, noun]) => of(Quantifier::Exactly(number(count)?), noun),
@@ -111,6 +114,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(Description::new(Quantifier::No, person).into())
         }
         ("me", []) => Some(Phrase::Speaker),
+        ("at_most_one", [noun]) => of(Quantifier::AtMost(1), noun),
+        ("more_than_one", [noun]) => of(Quantifier::AtLeast(2), noun),
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
         ("at_least" | "i_at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
         ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
@@ -137,6 +142,12 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             noun,
             "belongs_to".to_owned(),
             Phrase::Pronoun,
+        ),
+        ("genitive" | "i_genitive", [whole, noun]) => that(
+            Quantifier::The,
+            noun,
+            "belongs_to".to_owned(),
+            nominal(whole)?.with_quantifier(Quantifier::The).into(),
         ),
         ("i_the_that_place", [noun, place]) => {
             let (predicate, place) = place_of(place)?;
@@ -189,6 +200,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(same.other().into())
         }
         ("every_same" | "i_every_same", []) => Some(anaphoric_phrase(Quantifier::Every, function)),
+        ("both_same" | "i_both_same", []) => Some(anaphoric_phrase(Quantifier::All(2), function)),
         ("no_same", []) => Some(anaphoric_phrase(Quantifier::No, function)),
         ("structure_flank_of" | "i_structure_flank_of", [side, noun, place]) => {
             let wall = places::structure(noun, Some(places::side_from_tree(side)?))?;
@@ -213,6 +225,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             own.colors.push(entry_id(color)?);
             Some(own.into())
         }
+        ("only_one_same", []) => Some(anaphoric_phrase(Quantifier::Exactly(1), function)),
         ("exactly_same", [count]) => Some(anaphoric_phrase(
             Quantifier::Exactly(number(count)?),
             function,
@@ -220,6 +233,25 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("np_nothing" | "np_something", [inner]) => indefinite_pronoun(inner).map(Phrase::from),
         ("at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural", [noun])
         | ("gathering_of", [_, noun]) => of(Quantifier::AtLeast(2), noun),
+        ("whichever" | "i_whichever", [noun, said]) => {
+            let own = verb_phrases::with_predications(nominal(noun)?, said)?;
+            Some(own.with_quantifier(Quantifier::The).into())
+        }
+        ("whichever_closer" | "i_whichever_closer", [noun, reference]) => {
+            let reference = Some(phrase(reference)?);
+            Some(questions::with_selection(nominal(noun)?, "closest_to", reference).into())
+        }
+        ("whatever" | "i_whatever", [said]) => {
+            let any =
+                Description::new(Quantifier::Every, Noun::Object(Noun::ANY_OBJECT.to_owned()));
+            Some(verb_phrases::with_predications(any, said)?.into())
+        }
+        ("whatever_selected" | "i_whatever_selected", [order, reference]) => {
+            let any = Description::new(Quantifier::Some, Noun::Object(Noun::ANY_OBJECT.to_owned()));
+            let reference = Some(phrase(reference)?);
+            Some(questions::with_selection(any, &entry_id(order)?, reference).into())
+        }
+        ("i_me", []) => Some(Phrase::Speaker),
         ("i_something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun).into())
@@ -247,6 +279,16 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(verb_phrases::with_relative_clause(nominal(noun)?, added)?.into())
         }
         _ => sets::partitive_phrase(function.strip_prefix("i_").unwrap_or(function), arguments),
+    }
+}
+
+/// What several things are compared with: "the color of the curtains" is that of each.
+pub(super) fn each_of(tree: &Tree) -> Option<Phrase> {
+    match (parts(tree)?.0, phrase(tree)?) {
+        ("i_the_plural" | "the_plural", Phrase::Described(own)) => {
+            Some(own.with_quantifier(Quantifier::Every).into())
+        }
+        (_, other) => Some(other),
     }
 }
 
@@ -337,7 +379,14 @@ pub(super) fn nominal(tree: &Tree) -> Option<Description> {
         ("with" | "but_not", [noun, added]) => {
             let mut description = nominal(noun)?;
             let is_of = parts(added)?.0 == "modifier_of";
-            let added = modifier(added)?;
+            let mut added = modifier(added)?;
+            // "Every book except the yellow one": a book.
+            if added.predicate == Modifier::IDENTICAL
+                && let [Phrase::Described(other)] = &mut added.arguments[..]
+                && other.noun == Noun::SameNoun
+            {
+                other.noun.clone_from(&description.noun);
+            }
             if added.predicate.starts_with("leads_") && !is_passage_noun(&description.noun) {
                 return None;
             }
@@ -469,8 +518,8 @@ pub(super) fn modifier(tree: &Tree) -> Option<Modifier> {
         ("modifier_around" | "modifier_stranded", [other, relation]) => {
             return converse::modifier(&entry_id(relation)?, phrase(other)?);
         }
-        ("modifier_same_color", [other]) => ("same_color".to_owned(), vec![phrase(other)?]),
-        ("modifier_same_kind", [other]) => ("same_kind".to_owned(), vec![phrase(other)?]),
+        ("modifier_same_color", [other]) => ("same_color".to_owned(), vec![each_of(other)?]),
+        ("modifier_same_kind", [other]) => ("same_kind".to_owned(), vec![each_of(other)?]),
         ("modifier_closer", [near, far]) => {
             ("closer_to".to_owned(), vec![phrase(near)?, phrase(far)?])
         }

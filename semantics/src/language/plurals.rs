@@ -64,9 +64,9 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
 /// Returns whether what a noun phrase says holds of each of several things, or of none.
 fn is_plural(function: &str, arguments: &[Tree]) -> bool {
     match function.strip_prefix("i_").unwrap_or(function) {
-        "no" | "none_of" | "every" | "the_plural" | "every_counted" | "all_of" | "at_least"
-        | "at_least_two" | "bare_plural" | "several_of" | "number_of" | "at_least_of"
-        | "more_than" => true,
+        "no" | "none_of" | "every" | "the_plural" | "every_counted" | "both" | "both_of"
+        | "all_of" | "at_least" | "at_least_two" | "bare_plural" | "several_of" | "number_of"
+        | "at_least_of" | "more_than" | "more_than_one" => true,
         "exactly" => arguments
             .first()
             .and_then(number)

@@ -10,8 +10,8 @@ use super::phrases::{modifier, nominal, phrase};
 use super::to_tree::{PhrasePosition, TreeBuilder};
 use super::{alternatives, numbers, places, sets, verb_phrases};
 use crate::form::{
-    AttributeKind, Clause, Description, Modifier, Noun, OrdinalSelection, Phrase, Quantifier,
-    Question,
+    AttributeKind, Clause, Description, Modifier, Noun, OrdinalSelection, Phrase, Quality,
+    Quantifier, Question,
 };
 use crate::grammar::Tree;
 
@@ -225,6 +225,30 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             kind: AttributeKind::Place,
             of: phrase(of)?,
         },
+        ("which_of_stranded", [set, subject, word]) => which(
+            Some(sets::set_description(set)?),
+            atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
+        ),
+        ("how_many_held", [kind, subject, word]) => {
+            let (held, holder) = (nominal(kind)?, phrase(subject)?);
+            let converse = match entry_id(word)?.as_str() {
+                "supports" => "on",
+                "contains" => "in",
+                "has" | "holds" => "belongs_to",
+                _ => return None,
+            };
+            count(held.with_modifier(Modifier::new(converse, [holder])))
+        }
+        ("where_in", [place, of]) => {
+            let Phrase::Described(of) = phrase(of)? else {
+                return None;
+            };
+            let of = of.with_modifier(Modifier::new("in_room", [room(place)?]));
+            Question::Attribute {
+                kind: AttributeKind::Place,
+                of: of.into(),
+            }
+        }
         ("which_stranded", [kind, subject, word]) => which(
             Some(nominal(kind)?),
             atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
@@ -235,15 +259,15 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
                 atomic_clause(&entry_id(word)?, vec![phrase(subject)?, Phrase::Hole]),
             )
         }
-        ("what_says", [said]) => which(None, verb_phrases::clause(Phrase::Hole, said)?),
+        ("what_says", [said]) => which_hanging(verb_phrases::clause(Phrase::Hole, said)?),
         ("which_says", [kind, said]) => which(
             Some(nominal(kind)?),
             verb_phrases::clause(Phrase::Hole, said)?,
         ),
-        ("what_stands", [posture, said]) => which(
-            None,
-            verb_phrases::clause(Phrase::Hole, &posture_phrase(posture, said))?,
-        ),
+        ("what_stands", [posture, said]) => which_hanging(verb_phrases::clause(
+            Phrase::Hole,
+            &posture_phrase(posture, said),
+        )?),
         ("which_stands", [kind, posture, said]) => which(
             Some(nominal(kind)?),
             verb_phrases::clause(Phrase::Hole, &posture_phrase(posture, said))?,
@@ -310,6 +334,28 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
 }
 
 /// The phrase of an item such as "a clock on the wall": indefinite, with what tells where.
+/// "What is hanging above the bed?" asks for a hanging thing above the bed.
+fn which_hanging(clause: Clause) -> Question {
+    let hanging = Quality::State("hanging".to_owned());
+    match clause {
+        Clause::All(clauses) if matches!(&clauses[..], [Clause::Is { quality, .. }, _] if *quality == hanging) =>
+        {
+            let mut kind =
+                Description::new(Quantifier::Some, Noun::Object(Noun::ANY_OBJECT.to_owned()));
+            kind.state = Some("hanging".to_owned());
+            let clause = clauses
+                .into_iter()
+                .nth(1)
+                .unwrap_or(Clause::Exists(Phrase::Hole));
+            Question::Which {
+                kind: Some(Box::new(kind)),
+                clause,
+            }
+        }
+        clause => Question::Which { kind: None, clause },
+    }
+}
+
 fn placed_indefinite(item: &Tree) -> Option<Phrase> {
     match existence::items_from_tree(item)? {
         Phrase::Described(own)
@@ -432,6 +478,10 @@ pub(super) fn indirect_question(tree: &Tree) -> Option<Question> {
         ("indirect_material", [of]) => attribute(AttributeKind::Material, of),
         ("indirect_room", [of]) => attribute(AttributeKind::Room, of),
         ("indirect_stranded", arguments) => read_only_question("what_stranded", arguments),
+        ("indirect_which_of_stranded", arguments) => {
+            read_only_question("which_of_stranded", arguments)
+        }
+        ("indirect_which_stranded", arguments) => read_only_question("which_stranded", arguments),
         ("indirect_stranded_standing", arguments) => {
             read_only_question("what_stranded_standing", arguments)
         }

@@ -4,6 +4,7 @@ use super::from_tree::{entry_id, parts, place_of, possibly_negated_clause, room,
 use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
 use super::places;
+use super::step_groups::{before_step, coordinated_steps, wait_after};
 use super::to_tree::{PhrasePosition, TreeBuilder};
 use crate::form::{
     Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
@@ -52,9 +53,18 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             }
             rest
         }
+        ("plan_to_wait", [steps]) => {
+            let mut steps = plan(steps)?;
+            let there = steps.iter().rev().find_map(wait_after)?;
+            steps.push(there);
+            steps
+        }
         ("on_leaving", [last]) => {
             let here = Description::new(Quantifier::The, Noun::Room(Noun::ANY_ROOM.to_owned()));
             vec![RequestStep::Leave(here.into()), step(last)?]
+        }
+        ("on_leaving_room", [last, from]) => {
+            vec![RequestStep::Leave(room(from)?), step(last)?]
         }
         ("on_reaching_room", [place, rest]) => {
             let mut steps = plan(rest)?;
@@ -74,11 +84,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             steps.extend(plan(rest)?);
             steps
         }
-        ("before_doing", [last, before]) => {
-            let mut steps = plan(before)?;
-            steps.push(step(last)?);
-            steps
-        }
+        ("before_doing", [last, before]) => before_step(plan(before)?, step(last)?),
         ("after_done" | "after_doing", [done, rest]) => {
             let mut steps = vec![done_step(done)?];
             steps.extend(plan(rest)?);
@@ -88,11 +94,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             vec![done_step(done)?, step(last)?]
         }
         ("step_before_doing", [first, done]) => vec![step(first)?, done_step(done)?],
-        ("before_doing_it", [done, before]) => {
-            let mut steps = plan(before)?;
-            steps.push(done_step(done)?);
-            steps
-        }
+        ("before_doing_it", [done, before]) => before_step(plan(before)?, done_step(done)?),
         ("group", [only]) => coordinated_steps(only)?,
         ("group_then", [first, rest]) => {
             let mut steps = coordinated_steps(first)?;
@@ -164,67 +166,7 @@ fn merge_fetch_step(tree: &Tree, rest: &mut [RequestStep]) -> Option<bool> {
     })
 }
 
-/// Steps in one clause: "switch off the lamp and the radio".
-fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
-    Some(match parts(tree)? {
-        ("do_rather", [verb, object, other]) => {
-            let verb = entry_id(verb)?;
-            vec![act(&verb, object)?, refrain(&verb, other)?]
-        }
-        ("do_two", [verb, one, other]) => {
-            let verb = entry_id(verb)?;
-            vec![act(&verb, one)?, act(&verb, other)?]
-        }
-        ("put_both", [object, one, first, other, second]) => {
-            vec![put(object, one, first)?, put(object, other, second)?]
-        }
-        ("put_both_structure", [object, one, structure, other, second])
-        | ("put_by_floor", [_, object, one, structure, other, second]) => {
-            let floor = RequestStep::Put {
-                object: phrase(object)?,
-                predicate: entry_id(one)?,
-                to: places::structure(structure, None)?,
-            };
-            vec![floor, put(object, other, second)?]
-        }
-        ("put_two", [one, first, to, other, second, there]) => {
-            vec![put(one, first, to)?, put(other, second, there)?]
-        }
-        ("without_touching", [first, object]) => {
-            vec![step(first)?, refrain("touch", object)?]
-        }
-        ("go_along", [along, to]) => {
-            vec![RequestStep::GoTo(room(along)?), act("approach", to)?]
-        }
-        ("go_around_to", [around, to]) => {
-            vec![act("go_around", around)?, act("approach", to)?]
-        }
-        ("past_and_through", [past, through]) => {
-            vec![act("go_past", past)?, act("go_through", through)?]
-        }
-        ("through_and_past", [through, past]) => {
-            vec![act("go_through", through)?, act("go_past", past)?]
-        }
-        ("go_through", [to, way]) => {
-            vec![act("go_through", way)?, RequestStep::GoTo(room(to)?)]
-        }
-        ("turn_left_into", [to]) => {
-            vec![
-                RequestStep::Turn(TurnDirection::Left),
-                RequestStep::GoTo(room(to)?),
-            ]
-        }
-        ("turn_right_into", [to]) => {
-            vec![
-                RequestStep::Turn(TurnDirection::Right),
-                RequestStep::GoTo(room(to)?),
-            ]
-        }
-        _ => return None,
-    })
-}
-
-fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
+pub(super) fn act(verb: &str, object: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Do {
         verb: verb.to_owned(),
         object: phrase(object)?,
@@ -242,7 +184,7 @@ fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<Request
     })
 }
 
-fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
+pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
     let object = match (parts(object)?.0, phrase(object)?) {
         // "Do not touch the chairs" denies touching any, "every chair" only touching all.
         ("the_plural", Phrase::Described(own)) => own.with_quantifier(Quantifier::Some).into(),
@@ -254,7 +196,7 @@ fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
     })
 }
 
-fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
+pub(super) fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Put {
         object: phrase(object)?,
         predicate: entry_id(relation)?,
@@ -278,7 +220,7 @@ fn plan_or_step(tree: &Tree) -> Option<Vec<RequestStep>> {
     plan(tree).or_else(|| Some(vec![step(tree)?]))
 }
 
-fn step(tree: &Tree) -> Option<RequestStep> {
+pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
     Some(match parts(tree)? {
         ("go_to", [to]) => RequestStep::GoTo(room(to)?),
         ("leave_room", [from]) => RequestStep::Leave(room(from)?),
@@ -408,11 +350,21 @@ fn step(tree: &Tree) -> Option<RequestStep> {
                     .into(),
             }
         }
-        ("stand_at", [relation, landmark]) => RequestStep::Put {
-            object: Phrase::Listener,
-            predicate: entry_id(relation)?,
-            to: phrase(landmark)?,
-        },
+        ("stand_at", [relation, landmark]) => {
+            let to = phrase(landmark)?;
+            // "Stand by the lamp with the window on your right" tells how to stand, not which lamp.
+            let tells_side = |pair: &[Modifier]| {
+                pair[0].predicate == "has" && places::side_of(&pair[1].predicate).is_some()
+            };
+            if matches!(&to, Phrase::Described(own) if own.modifiers.windows(2).any(tells_side)) {
+                return None;
+            }
+            RequestStep::Put {
+                object: Phrase::Listener,
+                predicate: entry_id(relation)?,
+                to,
+            }
+        }
         ("come", []) => RequestStep::Do {
             verb: "approach".to_owned(),
             object: Phrase::Speaker,
@@ -420,7 +372,6 @@ fn step(tree: &Tree) -> Option<RequestStep> {
         ("do_on", [object]) => act("switch_on", object)?,
         ("do_not_on", [object]) => refrain("switch_on", object)?,
         ("do_not_off", [object]) => refrain("switch_off", object)?,
-        ("do_not_move", [object]) => refrain("touch", object)?,
         ("do_off", [object]) => act("switch_off", object)?,
         ("do_pick_up", [object]) => act("pick_up", object)?,
         ("do_drop", [object]) => act("drop", object)?,

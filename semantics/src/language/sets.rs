@@ -10,7 +10,8 @@ pub(super) fn partitive_phrase(function: &str, arguments: &[Tree]) -> Option<Phr
     let (quantifier, of) = match (function, arguments) {
         ("one_of", [of]) => (Quantifier::Some, of),
         ("only_one_of", [of]) => (Quantifier::Exactly(1), of),
-        ("all_of", [of]) => (Quantifier::Every, of),
+        ("all_of", [of]) => (every_member(of)?, of),
+        ("both_of", [of]) => (Quantifier::All(2), of),
         ("none_of", [of]) => (Quantifier::No, of),
         ("several_of", [of]) => (Quantifier::AtLeast(2), of),
         ("number_of", [count, of]) => (Quantifier::Exactly(number(count)?), of),
@@ -21,6 +22,14 @@ pub(super) fn partitive_phrase(function: &str, arguments: &[Tree]) -> Option<Phr
         _ => return None,
     };
     Some(set_description(of)?.with_quantifier(quantifier).into())
+}
+
+/// All of a set: of a counted one, "all of the three chairs", of exactly that number.
+fn every_member(set: &Tree) -> Option<Quantifier> {
+    Some(match parts(set)? {
+        ("set_counted" | "room_set_counted", [count, _]) => Quantifier::All(number(count)?),
+        _ => Quantifier::Every,
+    })
 }
 
 /// "More than three" is at least four.

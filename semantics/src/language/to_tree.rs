@@ -311,9 +311,10 @@ impl TreeBuilder<'_> {
                     Quantifier::Some => "room_a",
                     Quantifier::Every => "room_every",
                     Quantifier::No => "room_no",
-                    Quantifier::Exactly(_) | Quantifier::AtLeast(_) | Quantifier::AtMost(_) => {
-                        return None;
-                    }
+                    Quantifier::All(_)
+                    | Quantifier::Exactly(_)
+                    | Quantifier::AtLeast(_)
+                    | Quantifier::AtMost(_) => return None,
                 };
                 Some(Tree::apply(function, [kind]))
             }
@@ -334,9 +335,8 @@ impl TreeBuilder<'_> {
             Phrase::Listener => Tree::apply(if landmark { "i_you" } else { "you" }, []),
             Phrase::Described(description) if landmark => self.landmark(description)?,
             Phrase::Described(description) => self.described(description)?,
-            Phrase::Speaker if !landmark => Tree::apply("me", []),
+            Phrase::Speaker => Tree::apply(if landmark { "i_me" } else { "me" }, []),
             Phrase::Storey(_)
-            | Phrase::Speaker
             | Phrase::EachOther
             | Phrase::Hole
             | Phrase::NamedBefore
@@ -373,6 +373,10 @@ impl TreeBuilder<'_> {
             (Quantifier::The, []) => Some(Tree::apply("i_the", [own])),
             (Quantifier::Some, []) => Some(Tree::apply("i_some", [own])),
             (Quantifier::Every, []) => Some(Tree::apply("i_every", [own])),
+            (Quantifier::All(2), []) => Some(Tree::apply("i_both", [own])),
+            (Quantifier::All(number), []) => {
+                Some(Tree::apply("i_every_counted", [count(number), own]))
+            }
             (Quantifier::Exactly(number), []) if number != 1 => {
                 Some(Tree::apply("i_exactly", [count(number), own]))
             }
@@ -418,9 +422,12 @@ impl TreeBuilder<'_> {
             Quantifier::Some => Tree::apply("some", [noun]),
             Quantifier::The => Tree::apply("the", [noun]),
             Quantifier::Every => Tree::apply("every", [noun]),
+            Quantifier::All(2) => Tree::apply("both", [noun]),
+            Quantifier::All(number) => Tree::apply("every_counted", [count(number), noun]),
             Quantifier::No => Tree::apply("no", [noun]),
             Quantifier::Exactly(1) => Tree::apply("exactly_one", [noun]),
             Quantifier::Exactly(number) => Tree::apply("exactly", [count(number), noun]),
+            Quantifier::AtMost(1) => Tree::apply("at_most_one", [noun]),
             Quantifier::AtMost(number) => Tree::apply("at_most", [count(number), noun]),
             Quantifier::AtLeast(1) => Tree::apply("at_least_one", [noun]),
             Quantifier::AtLeast(number) => Tree::apply("at_least", [count(number), noun]),

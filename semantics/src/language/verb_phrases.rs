@@ -1,10 +1,11 @@
 //! What is said of a subject: "is red", "stands next to the door but is not open".
 
 use super::from_tree::{atomic_clause, entry_id, parts, place_of, quality_of, subjects};
-use super::phrases::{between_two, nominal, phrase, relation_predicate};
+use super::phrases::{between_two, each_of, nominal, phrase, relation_predicate};
 use super::{places, questions};
 use crate::form::{Clause, Description, Modifier, Noun, Phrase, Quality, Quantifier};
 use crate::grammar::Tree;
+use crate::size::SizeClass;
 
 /// One thing that is said of a subject.
 #[derive(Clone)]
@@ -80,6 +81,10 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
         ("vp_converse", [word, object]) => {
             affirmed(Predication::Converse(entry_id(word)?, phrase(object)?))
         }
+        ("vp_not_as", [quality, object]) => {
+            let relation = comparative_of(&quality_of(quality)?)?;
+            affirmed(Predication::Converse(relation.to_owned(), phrase(object)?))
+        }
         ("vp_superlative", [order, noun]) => {
             let selected = questions::with_selection(nominal(noun)?, &entry_id(order)?, None);
             relation("identical", [selected.into()])
@@ -93,8 +98,8 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
         ("vp_both_sides", [landmark]) => affirmed(Predication::BothSides(phrase(landmark)?)),
         ("vp_one_the_other", [word]) => affirmed(Predication::OneTheOther(entry_id(word)?)),
         ("vp_only", [noun]) => affirmed(Predication::Only(nominal(noun)?)),
-        ("vp_same_color", [other]) => relation("same_color", [phrase(other)?]),
-        ("vp_same_material", [other]) => relation("same_material", [phrase(other)?]),
+        ("vp_same_color", [other]) => relation("same_color", [each_of(other)?]),
+        ("vp_same_material", [other]) => relation("same_material", [each_of(other)?]),
         ("vp_side_by_side", []) => affirmed(Predication::EachOther("next_to".to_owned())),
         ("vp_each_other", [word]) => affirmed(Predication::EachOther(entry_id(word)?)),
         ("vp_color_material", [color, material]) | ("vp_material_color", [material, color]) => {
@@ -169,6 +174,16 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
     })
 }
 
+/// "Not as tall as the plant": the plant is taller.
+fn comparative_of(quality: &Quality) -> Option<&'static str> {
+    match quality {
+        Quality::State(state) if state == "tall" => Some("taller_than"),
+        Quality::State(state) if state == "wide" => Some("wider_than"),
+        Quality::Size(SizeClass::Large) => Some("larger_than"),
+        _ => None,
+    }
+}
+
 fn is_switching(said: &Predication) -> bool {
     matches!(
         said,
@@ -180,14 +195,20 @@ fn hangs(posture: &Tree) -> bool {
     parts(posture).is_some_and(|(function, _)| function.starts_with("hang"))
 }
 
-/// What hangs "on" a thing is mounted on it.
+/// What hangs "on" a thing is mounted on it; what hangs elsewhere is mounted on something.
 fn use_hangs_on(all: &mut PredicationList) {
-    for (said, _) in all {
-        if let Predication::Relation(modifier) = said
-            && modifier.predicate == "on"
-        {
-            "hangs_on".clone_into(&mut modifier.predicate);
+    let mut is_mounted = false;
+    for (said, _) in all.iter_mut() {
+        if let Predication::Relation(modifier) = said {
+            if modifier.predicate == "on" {
+                "hangs_on".clone_into(&mut modifier.predicate);
+            }
+            is_mounted |= modifier.predicate == "hangs_on";
         }
+    }
+    if !is_mounted {
+        let hanging = Predication::Quality(Quality::State("hanging".to_owned()));
+        all.insert(0, (hanging, false));
     }
 }
 
@@ -269,8 +290,12 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
         let all = all.into_iter();
         all.map(|one| clause_of(subject.clone(), one)).collect()
     };
-    let is_indefinite =
-        |own: &Description| !matches!(own.quantifier, Quantifier::The | Quantifier::Every);
+    let is_indefinite = |own: &Description| {
+        !matches!(
+            own.quantifier,
+            Quantifier::The | Quantifier::Every | Quantifier::All(_)
+        )
+    };
     match subject {
         Phrase::Described(description) if is_indefinite(&description) => {
             let mut description = *description;
@@ -313,6 +338,9 @@ pub(super) fn add_predications(description: &mut Description, all: PredicationLi
                     negated,
                     ..modifier
                 });
+            }
+            (Predication::Quality(Quality::State(state)), false) if description.state.is_some() => {
+                description.modifiers.push(Modifier::new(&state, []));
             }
             (Predication::Quality(quality), false) => add_quality(description, quality)?,
             (Predication::Quality(Quality::State(state)), true) => {

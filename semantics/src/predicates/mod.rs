@@ -4,6 +4,7 @@
 
 mod above;
 mod against;
+mod around;
 mod at_back_of;
 mod at_end_of;
 mod at_front_of;
@@ -24,6 +25,7 @@ mod far;
 mod front;
 mod full;
 mod half_open;
+mod hanging;
 mod hangs_on;
 mod has;
 mod held;
@@ -40,7 +42,10 @@ mod leads_from;
 mod leads_outside;
 mod leads_to;
 mod left_of;
+mod long;
+mod low;
 mod mount;
+mod narrow;
 mod near;
 mod next_to;
 mod on;
@@ -53,6 +58,7 @@ mod openness;
 mod opposite;
 mod patterned;
 mod places;
+mod proportions;
 mod reachable;
 mod right_of;
 mod room_contains;
@@ -67,6 +73,7 @@ mod support;
 mod supports;
 mod switched_off;
 mod switched_on;
+mod tall;
 mod taller_than;
 mod touching;
 mod triangle_distance;
@@ -75,6 +82,7 @@ mod view;
 mod visible;
 mod visible_from;
 mod visible_from_room;
+mod wide;
 mod wider_than;
 
 pub use crate::scene::SupportShare;
@@ -241,12 +249,14 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &belongs_to::BelongsTo,
         &has::Has,
         &hangs_on::HangsOn,
+        &hanging::Hanging,
         &attached_to::AttachedTo,
         &touching::Touching,
         &against::Against,
         &next_to::NextTo,
         &near::Near,
         &closer_to::CloserTo,
+        &around::Around,
         &far::Far,
         &above::Above,
         &below::Below,
@@ -287,6 +297,11 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &switched_off::SwitchedOff,
         &full::Full,
         &empty::Empty,
+        &tall::Tall,
+        &low::Low,
+        &wide::Wide,
+        &narrow::Narrow,
+        &long::Long,
         &round::Round,
         &striped::Striped,
         &checked::Checkered,

@@ -3,6 +3,7 @@
 //! To add one: a file here that implements [`Selection`], and a line in [`all`].
 
 mod closest_to;
+mod farthest;
 mod farthest_from;
 mod from_left;
 mod from_right;
@@ -113,6 +114,7 @@ pub fn all() -> &'static [&'static dyn Selection] {
         &from_left::FromLeft,
         &from_right::FromRight,
         &nearest::NearestToViewer,
+        &farthest::FarthestFromViewer,
         &closest_to::ClosestTo,
         &farthest_from::FarthestFrom,
         &largest::Largest,

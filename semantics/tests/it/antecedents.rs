@@ -103,7 +103,7 @@ fn it_is_the_last_thing_that_the_verb_suits() {
         ),
         (
             "There are two chairs near the bed and both are red.",
-            "There are two chairs near the bed, and every chair near the bed is red.",
+            "There are two chairs near the bed, and both chairs near the bed are red.",
         ),
     ] {
         assert_eq!(said(text), meant, "{text}");

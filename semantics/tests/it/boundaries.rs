@@ -404,7 +404,7 @@ fn the_nth_of_an_order_is_told_apart_or_not_at_all() {
     let mut names: Vec<&str> = selections::all().iter().map(|s| s.name()).collect();
     names.sort_unstable();
     names.dedup();
-    assert_eq!(names.len(), 11);
+    assert_eq!(names.len(), 12);
     assert!(
         selections::all()
             .iter()

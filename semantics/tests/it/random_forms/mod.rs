@@ -230,6 +230,7 @@ fn quantifier() -> BoxedStrategy<Quantifier> {
         Just(Quantifier::Some),
         Just(Quantifier::The),
         Just(Quantifier::Every),
+        (2..30_u32).prop_map(Quantifier::All),
         Just(Quantifier::No),
         (1..30_u32).prop_map(Quantifier::Exactly),
         (1..30_u32).prop_map(Quantifier::AtLeast),

@@ -1,0 +1,118 @@
+//! Steps that one clause of a request names together, and steps that follow from another one.
+
+use super::from_tree::{entry_id, parts, room};
+use super::phrases::phrase;
+use super::places;
+use super::requests::{act, put, refrain, step};
+use crate::form::{Form, Phrase, RequestStep, TurnDirection, topic_of};
+use crate::grammar::Tree;
+
+/// Steps in one clause: "switch off the lamp and the radio".
+pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
+    Some(match parts(tree)? {
+        ("do_rather", [verb, object, other]) => {
+            let verb = entry_id(verb)?;
+            vec![act(&verb, object)?, refrain(&verb, other)?]
+        }
+        ("do_two", [verb, one, other]) => {
+            let verb = entry_id(verb)?;
+            vec![act(&verb, one)?, act(&verb, other)?]
+        }
+        ("put_both", [object, one, first, other, second]) => {
+            vec![put(object, one, first)?, put(object, other, second)?]
+        }
+        ("put_both_structure", [object, one, structure, other, second])
+        | ("put_by_floor", [_, object, one, structure, other, second]) => {
+            let floor = RequestStep::Put {
+                object: phrase(object)?,
+                predicate: entry_id(one)?,
+                to: places::structure(structure, None)?,
+            };
+            vec![floor, put(object, other, second)?]
+        }
+        ("put_two", [one, first, to, other, second, there]) => {
+            vec![put(one, first, to)?, put(other, second, there)?]
+        }
+        ("without_touching", [first, object]) => {
+            vec![step(first)?, refrain("touch", object)?]
+        }
+        ("go_along", [along, to]) => {
+            vec![RequestStep::GoTo(room(along)?), act("approach", to)?]
+        }
+        ("go_along_room", [along, to]) => {
+            vec![
+                RequestStep::GoTo(room(along)?),
+                RequestStep::GoTo(room(to)?),
+            ]
+        }
+        ("go_around_to", [around, to]) => {
+            vec![act("go_around", around)?, act("approach", to)?]
+        }
+        ("past_and_through", [past, through]) => {
+            vec![act("go_past", past)?, act("go_through", through)?]
+        }
+        ("through_and_past", [through, past]) => {
+            vec![act("go_through", through)?, act("go_past", past)?]
+        }
+        ("touching_nothing_of", [object, then]) => {
+            vec![step(then)?, refrain("touch", object)?]
+        }
+        ("passing", [then, past]) => {
+            // "Passing the bench on its right" tells the side.
+            let passed = act("go_past", past)?;
+            let form = Form::Request(vec![passed.clone()]);
+            form.is_free_of_anaphora()
+                .then_some(vec![passed, step(then)?])?
+        }
+        ("go_past_to", [past, to]) => vec![act("go_past", past)?, act("approach", to)?],
+        ("go_through_to", [through, to]) => {
+            vec![act("go_through", through)?, act("approach", to)?]
+        }
+        ("go_through", [to, way]) => {
+            vec![act("go_through", way)?, RequestStep::GoTo(room(to)?)]
+        }
+        ("turn_left_into", [to]) => {
+            vec![
+                RequestStep::Turn(TurnDirection::Left),
+                RequestStep::GoTo(room(to)?),
+            ]
+        }
+        ("turn_right_into", [to]) => {
+            vec![
+                RequestStep::Turn(TurnDirection::Right),
+                RequestStep::GoTo(room(to)?),
+            ]
+        }
+        _ => return None,
+    })
+}
+
+/// The step of waiting where a step leads.
+pub(super) fn wait_after(step: &RequestStep) -> Option<RequestStep> {
+    match step {
+        RequestStep::GoTo(room) => Some(RequestStep::Put {
+            object: Phrase::Listener,
+            predicate: "in_room".to_owned(),
+            to: room.clone(),
+        }),
+        RequestStep::Do { verb, object } if verb == "approach" => Some(RequestStep::Do {
+            verb: "stop_at".to_owned(),
+            object: object.clone(),
+        }),
+        _ => None,
+    }
+}
+
+/// Steps before one that the sentence names first: "before you lift the vase, look under it", the vase.
+pub(super) fn before_step(mut steps: Vec<RequestStep>, last: RequestStep) -> Vec<RequestStep> {
+    if let (Some(first), Some(named)) = (steps.first_mut(), topic_of(&last)) {
+        let it = Form::Request(vec![first.clone()]).with_phrase(&Phrase::Pronoun, named);
+        if let Form::Request(mut only) = it
+            && let Some(only) = only.pop()
+        {
+            *first = only;
+        }
+    }
+    steps.push(last);
+    steps
+}
