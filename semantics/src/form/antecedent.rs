@@ -374,7 +374,12 @@ impl Resolver {
                         _ => None,
                     });
                 if let Some(named) = same {
-                    let (quantifier, selection) = (own.quantifier, own.selection.take());
+                    let selection = own.selection.take();
+                    // "Carry both plates to the kitchen and put them in the sink": both.
+                    let quantifier = match (own.quantifier, named.quantifier) {
+                        (Quantifier::Every, all @ Quantifier::All(_)) => all,
+                        (own, _) => own,
+                    };
                     **own = named.clone().with_quantifier(quantifier);
                     if selection.is_some() {
                         own.selection = selection;

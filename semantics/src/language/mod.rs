@@ -16,6 +16,7 @@ mod phrases;
 mod places;
 mod plurals;
 mod questions;
+mod questions_to_tree;
 mod read;
 mod requests;
 mod rooms;

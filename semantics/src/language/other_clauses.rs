@@ -65,9 +65,15 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
         }
         ("most_are" | "whether_most_are", [set, said]) => numbers::majority(set, said)?,
         ("neither_says", [one, other, said]) => {
-            let not = |subject: &Tree| {
-                let clause = verb_phrases::clause(phrase(subject)?, said)?;
-                Some(Clause::Not(Box::new(clause)))
+            let not = |subject: &Tree| match phrase(subject)? {
+                // "Neither a chair nor a table is there": no chair is.
+                Phrase::Described(own) if own.quantifier == Quantifier::Some => {
+                    verb_phrases::clause(own.with_quantifier(Quantifier::No).into(), said)
+                }
+                subject => {
+                    let clause = verb_phrases::clause(subject, said)?;
+                    Some(Clause::Not(Box::new(clause)))
+                }
             };
             Clause::All(vec![not(one)?, not(other)?])
         }

@@ -212,6 +212,11 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
                 _ => None,
             }
         }
+        // "The other one" is one other, "the other two" are two.
+        ("others", [count]) if number(count) == Some(1) => {
+            let same = Description::new(Quantifier::The, Noun::SameNoun);
+            Some(same.other().into())
+        }
         ("others", [count]) => {
             let others = Description::new(Quantifier::Exactly(number(count)?), Noun::SameNoun);
             Some(others.into())
@@ -367,7 +372,7 @@ fn is_picture(noun: &Noun) -> bool {
         "poster",
         "drawing",
     ];
-    matches!(noun, Noun::Object(noun) if shows.contains(&noun.as_str()))
+    matches!(noun, Noun::Object(noun) if shows.iter().any(|shown| noun.ends_with(shown)))
 }
 
 /// The description of a noun with its adjectives and modifiers; the caller sets its quantifier.

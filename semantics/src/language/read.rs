@@ -255,7 +255,7 @@ impl Language {
             .iter()
             .flat_map(|(_, form)| form.resolve_anaphora(None))
         {
-            if !forms.contains(&form) && !form.has_load_on_own_shelf() && !form.is_tautology() {
+            if !forms.contains(&form) && !form.has_load_on_own_shelf() && !form.is_about_itself() {
                 forms.push(form);
             }
         }

@@ -7,16 +7,26 @@ use super::places;
 use super::step_groups::{before_step, coordinated_steps, wait_after};
 use super::to_tree::{PhrasePosition, TreeBuilder};
 use crate::form::{
-    Clause, Description, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
+    Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
+    topic_of,
 };
 use crate::grammar::Tree;
 
 pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("one_step", [only]) => vec![step(only)?],
-        ("unless" | "step_unless", [condition, then]) => {
+        ("unless", [condition, then]) => {
             let not = Clause::Not(Box::new(possibly_negated_clause(condition)?));
             vec![conditional(not, plan_or_step(then)?, Vec::new())]
+        }
+        ("step_unless", [condition, then]) => {
+            let then = plan_or_step(then)?;
+            let condition = about_the_step(possibly_negated_clause(condition)?, &then);
+            vec![conditional(
+                Clause::Not(Box::new(condition)),
+                then,
+                Vec::new(),
+            )]
         }
         ("if", [condition, then]) => {
             vec![conditional(
@@ -29,6 +39,7 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
             let mut condition = possibly_negated_clause(condition)?;
             let then = plan_or_step(then)?;
             one_of_the_step(&mut condition, &then);
+            condition = about_the_step(condition, &then);
             vec![conditional(condition, then, Vec::new())]
         }
         ("if_else", [condition, then, otherwise]) => {
@@ -125,6 +136,32 @@ fn one_of_the_step(condition: &mut Clause, then: &[RequestStep]) {
     }
 }
 
+/// "Switch off the tap if it is on": the tap.
+fn about_the_step(condition: Clause, then: &[RequestStep]) -> Clause {
+    let Some(topic) = then.first().and_then(topic_of) else {
+        return condition;
+    };
+    let starts_with_it = match &condition {
+        Clause::Holds { arguments, .. } => arguments.first() == Some(&Phrase::Pronoun),
+        Clause::Is { subject, .. } => *subject == Phrase::Pronoun,
+        Clause::Not(inner) => matches!(
+            &**inner,
+            Clause::Is {
+                subject: Phrase::Pronoun,
+                ..
+            }
+        ),
+        _ => false,
+    };
+    if !starts_with_it {
+        return condition;
+    }
+    match Form::Claim(condition.clone()).with_phrase(&Phrase::Pronoun, topic) {
+        Form::Claim(clause) => clause,
+        _ => condition,
+    }
+}
+
 /// The step that "once you have opened the door" and "after opening the door" speak of.
 fn done_step(tree: &Tree) -> Option<RequestStep> {
     match parts(tree)? {
@@ -187,7 +224,9 @@ fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<Request
 pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
     let object = match (parts(object)?.0, phrase(object)?) {
         // "Do not touch the chairs" denies touching any, "every chair" only touching all.
-        ("the_plural", Phrase::Described(own)) => own.with_quantifier(Quantifier::Some).into(),
+        ("the_plural" | "every_same", Phrase::Described(own)) => {
+            own.with_quantifier(Quantifier::Some).into()
+        }
         (_, object) => object,
     };
     Some(RequestStep::DoNot {

@@ -4,7 +4,7 @@ use super::from_tree::{entry_id, parts, room};
 use super::phrases::phrase;
 use super::places;
 use super::requests::{act, put, refrain, step};
-use crate::form::{Form, Phrase, RequestStep, TurnDirection, topic_of};
+use crate::form::{Form, Phrase, Quantifier, RequestStep, TurnDirection, topic_of};
 use crate::grammar::Tree;
 
 /// Steps in one clause: "switch off the lamp and the radio".
@@ -19,6 +19,11 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
             vec![act(&verb, one)?, act(&verb, other)?]
         }
         ("put_both", [object, one, first, other, second]) => {
+            // "Put a book on the bed, next to the towel" is one book.
+            if matches!(phrase(object)?, Phrase::Described(own) if own.quantifier == Quantifier::Some)
+            {
+                return None;
+            }
             vec![put(object, one, first)?, put(object, other, second)?]
         }
         ("put_both_structure", [object, one, structure, other, second])
