@@ -318,8 +318,17 @@ impl Resolver {
             self.mention(phrase, role);
         });
         // "The other bed is wider than this one" names the one after the other, "smaller than the stand that supports it", too.
-        visit(&mut |phrase, _| match phrase {
-            Phrase::Described(own) => self.resolve_other(own),
+        visit(&mut |phrase, role| match phrase {
+            Phrase::Described(own) => {
+                // "The window is narrower than the one on the left" names the window after the other one.
+                if own.noun == Noun::SameNoun
+                    && role == PhraseRole::Topic
+                    && let Some(noun) = self.compared_noun()
+                {
+                    own.noun = noun;
+                }
+                self.resolve_other(own);
+            }
             Phrase::Pronoun => {
                 let topics = self.mentions.iter().rev().filter(|mention| {
                     mention.unit == self.unit
@@ -492,6 +501,19 @@ impl Resolver {
             .filter(|mention| mention.role == role)
             .find_map(noun);
         same.or_else(|| mentions().find_map(noun))
+    }
+
+    /// The noun of what the same clause compares.
+    fn compared_noun(&self) -> Option<Noun> {
+        self.mentions.iter().rev().find_map(|mention| {
+            let is_compared = mention.unit == self.unit && mention.role == PhraseRole::Topic;
+            match &mention.phrase {
+                Phrase::Described(own) if is_compared && matches!(own.noun, Noun::Object(_)) => {
+                    Some(own.noun.clone())
+                }
+                _ => None,
+            }
+        })
     }
 
     /// The things that "it" may stand for, the preferred one first.

@@ -15,7 +15,7 @@ fn excludes_itself(own: &Description) -> bool {
             && other.quantifier == Quantifier::The
             && rest.with_quantifier(Quantifier::The) == **other
     };
-    own.modifiers.iter().any(is_own)
+    own.quantifier == Quantifier::The && own.modifiers.iter().any(is_own)
 }
 
 fn puts_into_itself(step: &RequestStep) -> bool {
@@ -58,7 +58,15 @@ impl Form {
                 [one, other] if relation.predicate == Modifier::IDENTICAL && one == other
             )
         });
+        // "Nobody on the sofa and nothing on the rug" is not on a sofa and nothing.
+        let is_nothing = |item: &Phrase| matches!(item, Phrase::Described(own) if own.quantifier == Quantifier::No);
+        let is_at_nothing = self.relations().iter().any(|relation| {
+            relation.arguments.iter().skip(1).any(
+                |landmark| matches!(landmark, Phrase::List(items) if items.iter().any(is_nothing)),
+            )
+        });
         is_itself
+            || is_at_nothing
             || match self {
                 Self::Request(steps) => steps.iter().any(puts_into_itself),
                 Self::Claim(clause) => has_wrong_other(clause),

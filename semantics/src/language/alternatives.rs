@@ -80,6 +80,12 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
             closer(&phrase(of)?, named)
         }
+        ("which_kind_is_farther", [kind, of, one, other]) => {
+            let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
+            let mut clauses = closer(&phrase(of)?, named);
+            clauses.reverse();
+            clauses
+        }
         ("which_kind_is_closer", [kind, order, of, one, other]) => {
             let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
             let mut clauses = closer(&phrase(of)?, named);

@@ -45,13 +45,13 @@ pub(super) fn modifier(relation: &str, other: Phrase) -> Option<Modifier> {
 
 /// The clause of "the sink has a mirror above it"; the holder has the widest scope.
 pub(super) fn clause(holder: Phrase, relation: &str, other: Phrase) -> Option<Clause> {
-    if let Some(converse) = converse_of(relation) {
-        return Some(atomic_clause(converse, vec![holder, other]));
-    }
     let is_one = match &holder {
         Phrase::Id(_) | Phrase::Pronoun => true,
         Phrase::Described(own) => own.quantifier == Quantifier::The,
         _ => false,
     };
-    is_one.then(|| atomic_clause(relation, vec![other, holder]))
+    if is_one {
+        return Some(atomic_clause(relation, vec![other, holder]));
+    }
+    Some(atomic_clause(converse_of(relation)?, vec![holder, other]))
 }

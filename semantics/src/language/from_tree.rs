@@ -127,6 +127,10 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
             "closer_to",
             vec![phrase(reference)?, phrase(subject)?, phrase(other)?],
         ),
+        ("farther_than" | "whether_farther_than", [subject, reference, other]) => atomic_clause(
+            "closer_to",
+            vec![phrase(reference)?, phrase(other)?, phrase(subject)?],
+        ),
         ("see_room_from" | "whether_see_room_from", [from, to]) => {
             atomic_clause("visible_from_room", vec![room(to)?, room(from)?])
         }

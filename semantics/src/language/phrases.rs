@@ -68,6 +68,21 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let noun = Tree::apply("with", [noun.clone(), added.clone()]);
             selected(&noun, order, number(place)?, None)
         }
+        // "Stop at the second door": the second nearest.
+        ("nth_passage", [place, noun]) => {
+            let own = nominal(noun)?;
+            is_passage_noun(&own.noun).then_some(())?;
+            let selection = OrdinalSelection {
+                order: "nearest".to_owned(),
+                place: number(place)?,
+                reference: None,
+            };
+            let own = Description {
+                selection: Some(selection),
+                ..own
+            };
+            Some(own.with_quantifier(Quantifier::The).into())
+        }
         ("nth_at_side", [place, noun, side]) => {
             let side = places::side_from_tree(side)?;
             let selection = OrdinalSelection {
@@ -139,6 +154,18 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         // "Close its door": the door of it.
         ("its" | "i_its", [noun]) => that(
             Quantifier::The,
+            noun,
+            "belongs_to".to_owned(),
+            Phrase::Pronoun,
+        ),
+        ("its_plural", [noun]) => that(
+            Quantifier::Every,
+            noun,
+            "belongs_to".to_owned(),
+            Phrase::Pronoun,
+        ),
+        ("i_its_plural", [noun]) => that(
+            Quantifier::Some,
             noun,
             "belongs_to".to_owned(),
             Phrase::Pronoun,
@@ -381,7 +408,9 @@ pub(super) fn nominal(tree: &Tree) -> Option<Description> {
     let plain = |noun: String| Description::new(Quantifier::Some, Noun::Object(noun));
     Some(match (function, arguments) {
         ("plain", [inner]) => nominal(inner)?,
-        ("with" | "but_not", [noun, added]) => {
+        // "Do not touch the lamp, it is on" has no lamp that it is on.
+        ("with_after_comma", [_, added]) if parts(added)?.0 == "modifier_stranded" => return None,
+        ("with" | "with_after_comma" | "but_not", [noun, added]) => {
             let mut description = nominal(noun)?;
             let is_of = parts(added)?.0 == "modifier_of";
             let mut added = modifier(added)?;

@@ -30,7 +30,10 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
         _ => function,
     };
     let is_said = ["is", "says", "whether_is", "whether_says"].contains(&function.as_str());
-    let mut under = under_plural || is_plural(&function, &arguments) || function.ends_with("_not");
+    let mut under = under_plural
+        || is_plural(&function, &arguments)
+        || function.ends_with("_not")
+        || function.starts_with("how_many");
     let is_possession =
         ["modifier_with", "room_with", "room_some_with"].contains(&function.as_str());
     let mut distributed_arguments: Vec<Tree> = Vec::with_capacity(arguments.len());

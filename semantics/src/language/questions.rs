@@ -259,7 +259,7 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             )
         }
         ("what_says", [said]) => what(verb_phrases::clause(Phrase::Hole, said)?),
-        ("which_says", [kind, said]) => which(
+        ("which_says" | "which_modified_says", [kind, said]) => which(
             Some(nominal(kind)?),
             verb_phrases::clause(Phrase::Hole, said)?,
         ),

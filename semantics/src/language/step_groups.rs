@@ -59,6 +59,12 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("through_and_past", [through, past]) => {
             vec![act("go_through", through)?, act("go_past", past)?]
         }
+        ("without_dropping", [first, object]) => {
+            vec![step(first)?, refrain("drop", object)?]
+        }
+        ("along_and_past", [along, past]) => {
+            vec![RequestStep::GoTo(room(along)?), act("go_past", past)?]
+        }
         ("touching_nothing_of", [object, then]) => {
             vec![step(then)?, refrain("touch", object)?]
         }

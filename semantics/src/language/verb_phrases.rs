@@ -85,6 +85,12 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
             let relation = comparative_of(&quality_of(quality)?)?;
             affirmed(Predication::Converse(relation.to_owned(), phrase(object)?))
         }
+        // "As tall as the plant" is at least as tall: the plant is not taller.
+        ("vp_as", [quality, object]) => {
+            let relation = comparative_of(&quality_of(quality)?)?;
+            let taller = Predication::Converse(relation.to_owned(), phrase(object)?);
+            vec![(taller, true)]
+        }
         ("vp_superlative", [order, noun]) => {
             let selected = questions::with_selection(nominal(noun)?, &entry_id(order)?, None);
             relation("identical", [selected.into()])
@@ -237,6 +243,15 @@ fn any_room() -> Phrase {
 
 /// The clause that says one thing of `subject`.
 fn clause_of(subject: Phrase, (said, negated): (Predication, bool)) -> Option<Clause> {
+    // "Neither picture is as wide as the bed": the bed is wider than every picture.
+    let (subject, negated) = match (subject, &said) {
+        (Phrase::Described(own), Predication::Converse(..))
+            if negated && own.quantifier == Quantifier::No =>
+        {
+            (own.with_quantifier(Quantifier::Every).into(), false)
+        }
+        (subject, _) => (subject, negated),
+    };
     let clause = match said {
         Predication::Relation(modifier) => {
             let mut arguments = vec![subject];
@@ -297,7 +312,10 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
         )
     };
     match subject {
-        Phrase::Described(description) if is_indefinite(&description) => {
+        // "The floor is wooden and brown": "the floor" means any piece of it, and what is said is no part of its name.
+        Phrase::Described(description)
+            if is_indefinite(&description) && !matches!(description.noun, Noun::Structure(_)) =>
+        {
             let mut description = *description;
             add_predications(&mut description, own)?;
             let subject: Phrase = description.into();
