@@ -2,7 +2,8 @@
 
 use super::mention::{
     exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular, may_be_one,
-    meets_selectional_restriction, subject_with_predicate, subject_without_predicate, topic_of,
+    meets_selectional_restriction, object_with_predicate, subject_with_predicate,
+    subject_without_predicate, topic_of,
 };
 use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
 use super::{
@@ -129,23 +130,23 @@ const MAX_MEANINGS: usize = 8;
 const MAX_TRIES: usize = 64;
 
 /// A thing that was named.
-struct Mention {
-    phrase: Phrase,
-    role: PhraseRole,
+pub(super) struct Mention {
+    pub(super) phrase: Phrase,
+    pub(super) role: PhraseRole,
     /// The clause or step that named it.
-    unit: usize,
+    pub(super) unit: usize,
     /// With what its clause says of it, where its number is indefinite: "three cups are on the table".
-    with_said: Option<Description>,
+    pub(super) with_said: Option<Description>,
     /// False for what only describes another thing: the pot of "the plant in the pot is on the table".
-    is_argument: bool,
+    pub(super) is_argument: bool,
 }
 
 /// Puts antecedents in place of what stands for them, clause by clause and step by step.
-struct Resolver {
-    mentions: Vec<Mention>,
+pub(super) struct Resolver {
+    pub(super) mentions: Vec<Mention>,
     /// The only thing that "it" stands for in the first clause.
-    subject: Option<Phrase>,
-    unit: usize,
+    pub(super) subject: Option<Phrase>,
+    pub(super) unit: usize,
     /// The number of the candidate to take for each pronoun; the first one beyond its end.
     choices: Vec<usize>,
     /// The number of candidates of each pronoun.
@@ -264,6 +265,13 @@ impl Resolver {
                 if let Some(subject) = self.mentions.get_mut(first) {
                     subject.with_said = subject_with_predicate(one);
                 }
+                if let Some((object, with_said)) = object_with_predicate(one) {
+                    for mention in &mut self.mentions[first..] {
+                        if mention.phrase == object {
+                            mention.with_said = Some(with_said.clone());
+                        }
+                    }
+                }
             }
         }
     }
@@ -368,21 +376,7 @@ impl Resolver {
                 }
             }
             Phrase::Described(own) if own.noun == Noun::SameThings => {
-                let same = self
-                    .mentions
-                    .iter()
-                    .rev()
-                    .find_map(|mention| match &mention.phrase {
-                        Phrase::Described(named)
-                            if mention.role == PhraseRole::Topic
-                                && Form::NounPhrase(mention.phrase.clone())
-                                    .is_free_of_anaphora() =>
-                        {
-                            Some(mention.with_said.as_ref().unwrap_or(named))
-                        }
-                        _ => None,
-                    });
-                if let Some(named) = same {
+                if let Some(named) = self.things_named() {
                     let selection = own.selection.take();
                     // "Carry both plates to the kitchen and put them in the sink": both.
                     let quantifier = match (own.quantifier, named.quantifier) {
@@ -449,135 +443,5 @@ impl Resolver {
         if let Some(named) = named {
             own.modifiers.clone_from(&named.modifiers);
         }
-    }
-
-    /// The last room that an earlier clause or step is about.
-    fn room_before(&self) -> Option<Phrase> {
-        let mut rooms = self.mentions.iter().rev().filter(|mention| {
-            mention.unit < self.unit
-                && matches!(
-                    &mention.phrase,
-                    Phrase::Described(own)
-                        if matches!(own.noun, Noun::Room(_)) && own.quantifier == Quantifier::The
-                )
-        });
-        rooms.next().map(|mention| mention.phrase.clone())
-    }
-
-    /// The noun of the last object that differs from `own` in a quality of the same kind: "the purple vase on the shelf next to the
-    /// yellow one" is next to a yellow vase.
-    fn contrasted(&self, own: &Description) -> Option<Noun> {
-        let differs = |named: &Description| {
-            let colors = !own.colors.is_empty() && !named.colors.is_empty();
-            let sizes = own.size.is_some() && named.size.is_some();
-            let states = own.state.is_some() && named.state.is_some();
-            let materials = own.material.is_some() && named.material.is_some();
-            colors && own.colors != named.colors
-                || sizes && own.size != named.size
-                || states && own.state != named.state
-                || materials && own.material != named.material
-        };
-        self.mentions
-            .iter()
-            .rev()
-            .find_map(|mention| match &mention.phrase {
-                Phrase::Described(named)
-                    if matches!(named.noun, Noun::Object(_)) && differs(named) =>
-                {
-                    Some(named.noun.clone())
-                }
-                _ => None,
-            })
-    }
-
-    /// The noun of the last object in a role, else of the last one.
-    fn noun_in_role(&self, role: PhraseRole) -> Option<Noun> {
-        let noun = |mention: &Mention| match &mention.phrase {
-            Phrase::Described(own) if matches!(own.noun, Noun::Object(_)) => Some(own.noun.clone()),
-            _ => None,
-        };
-        let mentions = || self.mentions.iter().rev();
-        let same = mentions()
-            .filter(|mention| mention.role == role)
-            .find_map(noun);
-        same.or_else(|| mentions().find_map(noun))
-    }
-
-    /// The noun of what the same clause compares.
-    fn compared_noun(&self) -> Option<Noun> {
-        self.mentions.iter().rev().find_map(|mention| {
-            let is_compared = mention.unit == self.unit && mention.role == PhraseRole::Topic;
-            match &mention.phrase {
-                Phrase::Described(own) if is_compared && matches!(own.noun, Noun::Object(_)) => {
-                    Some(own.noun.clone())
-                }
-                _ => None,
-            }
-        })
-    }
-
-    /// The things that "it" may stand for, the preferred one first.
-    fn candidates(&self, verb: Option<&str>) -> Vec<Phrase> {
-        let mut found = self.named_before(verb);
-        // What stands for something itself is no antecedent.
-        found.retain(|phrase| Form::NounPhrase(phrase.clone()).is_free_of_anaphora());
-        found
-    }
-
-    fn named_before(&self, verb: Option<&str>) -> Vec<Phrase> {
-        if let Some(subject) = &self.subject {
-            return vec![subject.clone()];
-        }
-        let earlier = self
-            .mentions
-            .iter()
-            .filter(|mention| mention.unit < self.unit);
-        let mut earlier: Vec<&Mention> = earlier.collect();
-        // What a step is about before landmarks, of either the last one first.
-        earlier.sort_by_key(|mention| {
-            let suits =
-                verb.is_none_or(|verb| meets_selectional_restriction(verb, &mention.phrase));
-            let landmark = mention.role == PhraseRole::Landmark;
-            (
-                !suits,
-                landmark,
-                usize::MAX - mention.unit,
-                !mention.is_argument,
-            )
-        });
-        let mut phrases: Vec<Phrase> = Vec::new();
-        for mention in earlier {
-            let is_room = matches!(
-                &mention.phrase,
-                Phrase::Described(own) if matches!(own.noun, Noun::Room(_))
-            );
-            // "The hood is above it": not above itself.
-            let mut own = self.mentions.iter();
-            let is_own = own.any(|own| own.unit == self.unit && own.phrase == mention.phrase);
-            // "A pan is on the stove, and it is empty": a pan on the stove.
-            let phrase = match &mention.with_said {
-                Some(said) if is_indefinite_singular(said) => said.clone().into(),
-                _ => mention.phrase.clone(),
-            };
-            if !is_room && !is_own && !phrases.contains(&phrase) {
-                phrases.push(phrase);
-            }
-        }
-        // "Both bottles are on the table, and the tray is next to it": next to the table.
-        if phrases.iter().any(may_be_one) {
-            phrases.retain(may_be_one);
-        }
-        if phrases.is_empty() {
-            // "The cup is larger than the tray that supports it": a thing of the same clause, not the one described.
-            let own = self
-                .mentions
-                .iter()
-                .filter(|mention| mention.unit == self.unit && mention.role == PhraseRole::Topic);
-            let own: Vec<&Mention> = own.collect();
-            if let [first, .., _] = own[..] {
-                phrases.push(first.phrase.clone());
-            }
-        }
-        phrases
     }
 }

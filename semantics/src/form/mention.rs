@@ -39,6 +39,31 @@ pub(super) fn subject_with_predicate(clause: &Clause) -> Option<Description> {
     Some(subject)
 }
 
+/// Several things that a clause says another one has, with where they are: the doors of "the wardrobe has three doors".
+pub(super) fn object_with_predicate(clause: &Clause) -> Option<(Phrase, Description)> {
+    let Clause::Holds {
+        predicate,
+        arguments,
+    } = clause
+    else {
+        return None;
+    };
+    let converse = match predicate.as_str() {
+        "has" => "belongs_to",
+        "supports" => "on",
+        "contains" => "in",
+        _ => return None,
+    };
+    let [holder, object @ Phrase::Described(own)] = &arguments[..] else {
+        return None;
+    };
+    if may_be_one(object) {
+        return None;
+    }
+    let own = Description::clone(own).with_modifier(Modifier::new(converse, [holder.clone()]));
+    Some((object.clone(), own))
+}
+
 /// A subject of indefinite number with what its clause denies of it: "a lamp is not on".
 pub(super) fn subject_without_predicate(clause: &Clause) -> Option<Description> {
     let subject = match clause {

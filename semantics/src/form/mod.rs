@@ -4,6 +4,7 @@
 //! text and text into forms; `docs/words.md` defines the meaning of each.
 
 mod antecedent;
+mod antecedent_search;
 mod clause;
 mod identity;
 mod mention;

@@ -417,7 +417,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
         ("do_bring_here" | "do_bring_me" | "do_fetch", [object]) => act("bring_me", object)?,
         ("do", [verb, object]) => act(&entry_id(verb)?, object)?,
         ("do_not", [verb, object]) => refrain(&entry_id(verb)?, object)?,
-        ("put" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
+        ("put" | "put_down" | "put_modified", [object, relation, to]) => put(object, relation, to)?,
         (
             "put_in_place" | "put_modified_in_place" | "put_in_destination" | "leave_in_place",
             [object, place],

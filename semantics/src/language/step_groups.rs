@@ -4,7 +4,7 @@ use super::from_tree::{entry_id, parts, room};
 use super::phrases::phrase;
 use super::places;
 use super::requests::{act, put, refrain, step};
-use crate::form::{Form, Phrase, Quantifier, RequestStep, TurnDirection, topic_of};
+use crate::form::{Form, Modifier, Phrase, Quantifier, RequestStep, TurnDirection, topic_of};
 use crate::grammar::Tree;
 
 /// Steps in one clause: "switch off the lamp and the radio".
@@ -12,7 +12,10 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
     Some(match parts(tree)? {
         ("do_rather", [verb, object, other]) => {
             let verb = entry_id(verb)?;
-            vec![act(&verb, object)?, refrain(&verb, other)?]
+            let done = act(&verb, object)?;
+            let mut refrained = refrain(&verb, other)?;
+            inherit_side_landmark(&done, &mut refrained);
+            vec![done, refrained]
         }
         ("do_two", [verb, one, other]) => {
             let verb = entry_id(verb)?;
@@ -96,6 +99,35 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         _ => return None,
     })
+}
+
+/// "The cabinet on the right of the window, not the one on the left": of the window, too.
+fn inherit_side_landmark(done: &RequestStep, refrained: &mut RequestStep) {
+    let (
+        RequestStep::Do {
+            object: Phrase::Described(named),
+            ..
+        },
+        RequestStep::DoNot {
+            object: Phrase::Described(other),
+            ..
+        },
+    ) = (done, refrained)
+    else {
+        return;
+    };
+    let mut sides = named.modifiers.iter();
+    let Some(side) = sides.find(|side| ["left_of", "right_of"].contains(&&*side.predicate)) else {
+        return;
+    };
+    for modifier in &mut other.modifiers {
+        let of = match modifier.predicate.as_str() {
+            "on_left" => "left_of",
+            "on_right" => "right_of",
+            _ => continue,
+        };
+        *modifier = Modifier::new(of, side.arguments.clone());
+    }
 }
 
 /// The step of waiting where a step leads.
