@@ -59,7 +59,13 @@ TABLE: Map = {
     "t_zero": "",
     "seconds_per_unit": 1.0,
     "units": NAMES,
-    "cleaning": {"unsorted": "", "duplicates": "", "repeated_frames": "", "gaps": ""},
+    "cleaning": {
+        "unsorted": "",
+        "duplicates": "",
+        "repeated_frames": "",
+        "gaps": "",
+        "short_episodes": "",
+    },
 }
 
 _KINDS: dict[type, tuple[tuple[type, ...], str]] = {

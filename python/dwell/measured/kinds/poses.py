@@ -222,6 +222,8 @@ def _write_starts(
     with job.draft.table("starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz", origin) as write:
         for place, row in table:
             name = table.text(row, names)
+            if name in reader.short:
+                continue
             count = int(table.number(place, row, sample))
             found = now.get((name, count), (name, count))
             if name in known and (name, count) not in now and _was_left_out(episodes, name, count):
