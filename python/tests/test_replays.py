@@ -142,8 +142,35 @@ def test_what_no_file_can_hold_is_refused(tmp_path: Path, apartment: dwell.House
     env.restore(snapshot)
     with pytest.raises(dwell.UsageError, match="something else than an action"):
         recorder.step(np.int64(1))
+    recorder.close()
     with pytest.raises(dwell.ConfigError, match="expected an environment of dwell"):
         ReplayRecorder(gymnasium.make("CartPole-v1"), tmp_path)  # type: ignore[arg-type] # the fault
+
+
+def test_steps_before_a_change_that_no_file_holds_are_written(tmp_path: Path) -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    recorder = ReplayRecorder(env, tmp_path)
+    recorder.reset(seed=1)
+    for _ in range(3):
+        recorder.step(np.int64(1))
+    env.world.listen()
+    # Nothing goes on without a record, nor without a word.
+    for _ in range(2):
+        with pytest.raises(
+            dwell.UsageError, match=r"are written in .*episode_0000\.replay; reset b"
+        ):
+            recorder.step(np.int64(1))
+    recorder.reset(seed=2)
+    env.world.listen()
+    with pytest.raises(dwell.UsageError, match="no step was made before; reset begins another"):
+        recorder.step(np.int64(1))
+    recorder.reset(seed=3)
+    recorder.step(np.int64(2))
+    recorder.close()
+    before, after = (dwell.Replay.read(path) for path in sorted(tmp_path.iterdir()))
+    assert before.actions == ("move_forward",) * 3
+    assert before.differences() == []
+    assert after.actions == ("turn_left",)
 
 
 WRONG: list[tuple[str, object, str]] = [

@@ -12,7 +12,7 @@ import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, SupportsFloat, TypeVar, cast
+from typing import Any, Generic, Literal, SupportsFloat, TypeVar, cast
 
 import gymnasium
 import numpy as np
@@ -184,7 +184,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         finally:
             super().close()
 
-    def __exit__(self, *args: object) -> bool:
+    def __exit__(self, *args: object) -> Literal[False]:
         """Closes; an exception of the block goes on, whatever becomes of the bundle.
 
         Raises:
