@@ -11,6 +11,7 @@ from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import (
+    COLUMN,
     TABLE,
     Job,
     Map,
@@ -86,7 +87,7 @@ _SCHEMA: Map = {
         "part": "",
         "units": {},
         "episode": (str, list),
-        "sample": "",
+        "sample": COLUMN,
         "velocity": [],
         "angular_velocity": [],
     },

@@ -36,7 +36,7 @@ fn words(name: &str) -> impl Iterator<Item = &str> {
 }
 
 /// Returns whether at most `letters` letters differ between two names, upper case or not, and more than those are the same.
-pub(crate) fn is_within_edit_distance(name: &str, known: &str, letters: usize) -> bool {
+pub fn is_within_edit_distance(name: &str, known: &str, letters: usize) -> bool {
     known.chars().count() > 2 * letters && distance(name, known) <= letters
 }
 
