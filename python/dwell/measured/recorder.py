@@ -178,9 +178,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
             MeasuredDataError: As of :meth:`write`.
         """
         try:
-            if self._has_news or self._row is not None:
-                for note in self.write().get("notes", ()):
-                    _LOG.warning("%s: %s", self._out, note)
+            self._write_news()
         finally:
             super().close()
 
@@ -190,13 +188,21 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         Raises:
             MeasuredDataError: As of :meth:`close`, where the block had no exception.
         """
-        try:
-            self.close()
-        except Exception as refused:
-            if args[:1] in ((), (None,)):
-                raise
-            _LOG.warning("%s was not written: %s", self._out, refused)
+        if args[:1] not in ((), (None,)):
+            try:
+                self._write_news()
+            except Exception as refused:
+                # What ended the block is what its user looks for.
+                self._has_news = False
+                _LOG.warning("%s was not written: %s", self._out, refused)
+        self.close()
         return False
+
+    def _write_news(self) -> None:
+        """Writes the bundle if something was recorded since it was last tried."""
+        if self._has_news or self._row is not None:
+            for note in self.write().get("notes", ()):
+                _LOG.warning("%s: %s", self._out, note)
 
     def _imported(self, out: Path) -> dict[str, Any]:
         return import_files([self.log_file], self.map_file, out, lambda *_: None)
