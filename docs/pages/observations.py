@@ -29,7 +29,7 @@ def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -
         "agents": [{"agent": number} for number in range(count)],
     }
     on_wheels = {"world": {"agents": [{"locomotion": "differential_drive"}]}}
-    more = on_wheels if "wheel_odometry" in sensors else several if count > 1 else {}
+    more = on_wheels if "wheel_odometry" in (sensors or ()) else several if count > 1 else {}
     config = env_json(NativeSettings(task, sensors=sensors), **more)
     room = dwell.House.shoebox(_ROOM_M, substance="plaster")
     batch = _native.Batch([room.native], config)
