@@ -13,7 +13,7 @@ import pytest
 
 import dwell
 from dwell import cli
-from dwell.envs import DwellEnv, ReplayRecorder
+from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
 from dwell.sounds import read_wav
 
 pytestmark = pytest.mark.usefixtures("open_once")
@@ -171,6 +171,23 @@ def test_steps_before_a_change_that_no_file_holds_are_written(tmp_path: Path) ->
     assert before.actions == ("move_forward",) * 3
     assert before.differences() == []
     assert after.actions == ("turn_left",)
+
+
+def test_of_environments_that_step_together_the_changed_one_is_told_once(tmp_path: Path) -> None:
+    bare = DwellVectorEnv(2, "Free", houses="builtin:studio", sensors=["gps"])
+    envs = VectorReplayRecorder(bare, tmp_path)
+    envs.reset(seed=1)
+    saved = bare.snapshot()
+    envs.step(np.array([1, 1]))
+    bare.restore([None, saved[1]])
+    told = r"world of environment 1 was .* its steps are made without a record$"
+    with pytest.raises(dwell.UsageError, match=told):
+        envs.step(np.array([1, 1]))
+    envs.step(np.array([2, 1]))
+    envs.close()
+    changed, other = (dwell.Replay.read(path) for path in sorted(tmp_path.iterdir()))
+    assert changed.actions == ("move_forward",)
+    assert other.actions == ("move_forward", "turn_left")
 
 
 WRONG: list[tuple[str, object, str]] = [
