@@ -14,6 +14,7 @@ use serde::{Deserialize, Serialize};
 )]
 pub struct AcousticConfig {
     /// Sample rate of impulse responses, Hz; 8,000 to 192,000.
+    #[schemars(range(min = 8_000, max = 192_000))]
     pub rate_hz: u32,
     /// Rays of the energy tail; 0 (no tail) to 10,000,000.
     pub rays: usize,

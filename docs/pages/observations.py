@@ -28,7 +28,9 @@ def specifications(sensors: NativeSensors, task: str = "InstructionFollowing") -
         "world": {"agents": [{}] * count},
         "agents": [{"agent": number} for number in range(count)],
     }
-    config = env_json(NativeSettings(task, sensors=sensors), **(several if count > 1 else {}))
+    on_wheels = {"world": {"agents": [{"locomotion": "differential_drive"}]}}
+    more = on_wheels if "wheel_odometry" in (sensors or ()) else several if count > 1 else {}
+    config = env_json(NativeSettings(task, sensors=sensors), **more)
     room = dwell.House.shoebox(_ROOM_M, substance="plaster")
     batch = _native.Batch([room.native], config)
     rows = zip(specs(batch), batch.sensor_agents(), strict=True)

@@ -2,8 +2,9 @@
 
 from __future__ import annotations
 
+import logging
 import os
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from typing import TYPE_CHECKING, Any
 
 import numpy as np
@@ -31,6 +32,7 @@ if TYPE_CHECKING:
     from typing_extensions import Unpack
 
 
+_LOG = logging.getLogger("dwell.acoustics")
 #: The attributes that a pickle's arguments make again.
 _OWN = ("house", "_native", "_config", "_laws")
 
@@ -52,7 +54,8 @@ class AcousticScene:
             laws: Laws to install, as :class:`dwell.World` takes them; or what calibration
                 found (laws and parameters), as a mapping or as the path of its ``found.json``.
                 Those of air and sources change energies and responses; those of microphones act on
-                what ``impulse_response`` returns, as on a recording of the impulse.
+                what ``impulse_response`` returns, as on a recording of the impulse. Those of motion
+                and of cameras change nothing here, and are logged (logger ``dwell.acoustics``).
             **config: What :attr:`config` lists, by name: ``rate_hz`` (8,000 to 192,000), ``rays``
                 of the tail (0 to 10,000,000), ``image_order`` (0 to 4), ``max_duration_s`` (0.02 to
                 20) and so on. A response ends after ``max_duration_s``: decay times of a room that
@@ -60,6 +63,7 @@ class AcousticScene:
         """
         self.house = house if isinstance(house, House) else House.open(house)
         rows, values = found(laws)
+        _warn_of_silent_laws(rows)
         settings = plain_settings(checked("AcousticConfig", config))
         with file_of_laws_named(laws):
             self._native = _native.AcousticScene(
@@ -270,3 +274,11 @@ def _rebuild(
     scene = kind.__new__(kind)
     AcousticScene.__init__(scene, house, laws=laws, **config)
     return scene
+
+
+def _warn_of_silent_laws(rows: Sequence[Mapping[str, Any]]) -> None:
+    """Logs which laws act on no sound: allowed, since a world may have the same list."""
+    engines = {law["id"]: law["engine"] for law in _native.laws()}
+    silent = [str(row["id"]) for row in rows if engines.get(row["id"], "acoustics") != "acoustics"]
+    if silent:
+        _LOG.warning("laws: %s: no law of sound; an AcousticScene is as without", ", ".join(silent))

@@ -56,8 +56,11 @@ def _colors(name: str, value: object) -> object:
     return rows
 
 
-def bodies(agents: object) -> list[dict[str, Any]]:
-    """A body for each agent, from a count or from mappings of what differs from the default."""
+def bodies(agents: object, places: Sequence[str] | None = None) -> list[dict[str, Any]]:
+    """A body for each agent, from a count or from mappings of what differs from the default.
+
+    ``places``: where each stands, for messages.
+    """
     if isinstance(agents, str | bytes) or not isinstance(agents, Sequence):
         try:
             return [{} for _ in range(integer_in_range("agents", agents, high=64))]
@@ -66,9 +69,11 @@ def bodies(agents: object) -> list[dict[str, Any]]:
     known = {**setting_checks("AgentBody"), "locomotion": _locomotion, "colors": _colors}
     rows = []
     for k, body in enumerate(agents):
+        at = f"agents[{k}]" if places is None else places[k]
         if not isinstance(body, Mapping):
-            raise ConfigError(f"agents[{k}] is {quoted(body)}; expected a mapping")
-        rows.append(checked_fields(f"agents[{k}]", body, known))
+            like = ", such as {'kind': 'person'}" if isinstance(body, str) else ""
+            raise ConfigError(f"{at} is {quoted(body)}; expected a mapping{like}")
+        rows.append(checked_fields(at, body, known))
     return rows
 
 

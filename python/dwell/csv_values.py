@@ -32,7 +32,11 @@ def require_unique_columns(path: Path, columns: Sequence[str], names: Sequence[s
     """Refuses a head that lacks columns, or has one of them twice."""
     for name in names:
         if columns.count(name) > 1:
-            raise ValueError(f"{path}: column {name!r} stands {columns.count(name)} times; once")
+            count = columns.count(name)
+            raise ValueError(
+                f"{path}: {count} columns are called {name!r}, and the map names one of them; give "
+                "each a name of its own"
+            )
         if name not in columns:
             near = similar_column(name, columns)
             meant = f"; write {near!r} in the map if that is meant" if near else ""

@@ -130,10 +130,14 @@ class PersonRoutine:
         self._current: tuple[Errand, float] | None = None
 
     def _request(self, at: str, sentence: object) -> str:
-        asked = text(f"errands[{at}]", sentence)
-        form = self._world.check(asked, agent=self._agent)["form"]
+        at = f"errands[{at}]"
+        asked = text(at, sentence)
+        try:
+            form = self._world.check(asked, agent=self._agent)["form"]
+        except ConfigError as error:
+            raise ConfigError(f"{at}: {error}") from None
         if "request" not in form:
-            raise ConfigError(f"errands[{at}] is {quoted(asked)}; expected a request")
+            raise ConfigError(f"{at} is {quoted(asked)}; expected a request")
         return asked
 
     @property

@@ -64,7 +64,7 @@ def checks(rows: Sequence[Mapping[str, Any]]) -> dict[str, Check]:
 
 
 def check_of(schema: Mapping[str, Any]) -> Check:
-    """The check of a value's type. Ranges are the engine's.
+    """The check of a value's type, and of the range of whole numbers; others are the engine's.
 
     Raises:
         LookupError: There is none for such a schema.
@@ -95,7 +95,9 @@ def _kinds(schema: Mapping[str, Any]) -> dict[str, Mapping[str, Any]]:
 
 def _check_of_kind(kind: str, schema: Mapping[str, Any]) -> Check:
     if kind == "integer":
-        low, high = _BOUNDS[schema["format"]]
+        bounds = _BOUNDS[schema["format"]]
+        told = zip(("minimum", "maximum"), bounds, strict=True)
+        low, high = (int(schema.get(name, bound)) for name, bound in told)
         return lambda name, value: integer_in_range(name, value, low=low, high=high)
     if kind == "array":
         return _LISTS.get(schema.get("minItems", 0), _as_is)

@@ -31,6 +31,9 @@ impl WorldAccess<'_> {
             _ => named.as_str().and_then(|name| house.object_named(name)),
         };
         found.ok_or_else(|| {
+            if named.is_number() {
+                return PyFault::Config(self.no_object_with_id(named));
+            }
             let known = house.objects.iter().map(|object| object.name.as_str());
             let near =
                 dwell_houses::nearest_names(named.as_str().unwrap_or_default(), known, NAMES);
@@ -39,6 +42,29 @@ impl WorldAccess<'_> {
                 house.objects.len()
             ))
         })
+    }
+
+    /// The error for a number that is no object's.
+    fn no_object_with_id(&self, number: &serde_json::Value) -> String {
+        let house = self.world.house();
+        let first = house.structure.len() + 1;
+        let last = house.structure.len() + house.objects.len();
+        let piece = number
+            .as_i64()
+            .and_then(|id| house.entity(dwell_scene::EntityId(i32::try_from(id).ok()?)));
+        let what = match piece {
+            Some(Entity::Structure(id)) => {
+                format!(
+                    " (it is the piece {:?} of the building)",
+                    house.structure[id].name
+                )
+            }
+            _ => String::new(),
+        };
+        if house.objects.is_empty() {
+            return format!("no object {number}{what}; there are none");
+        }
+        format!("no object {number}{what}; objects have the ids {first} to {last}, or names")
     }
 
     /// A part by its object's name and its own; without one the object's first part that moves.

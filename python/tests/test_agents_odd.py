@@ -35,8 +35,16 @@ BAD: list[tuple[dict[str, Any], str]] = [
     ({"agents": {"a": {"voice": "yes"}}}, "a mapping with words"),
     ({"sensor": ["gps"]}, "did you mean sensors"),
     ({"task": "Cooperate", "agents": 1}, "at least 2 agents in Cooperate"),
-    ({"agents": {"a": {}, "b": {"body": {"radius_m": 9.0}}}}, "agents.b: radius_m is 9 (range"),
-    ({"agents": {"a": {}, "b": {"body": {"height_m": "x"}}}}, "agents.b.height_m is 'x'"),
+    (
+        {"agents": {"a": {}, "b": {"body": {"radius_m": 9.0}}}},
+        "agents.b.body: radius_m is 9 (range",
+    ),
+    ({"agents": {"a": {}, "b": {"body": {"height_m": "x"}}}}, "agents.b.body.height_m is 'x'"),
+    (
+        {"agents": {"a": {}, "b": {"body": "person"}}},
+        "agents.b.body is 'person'; expected a mapping, such as {'kind': 'person'}",
+    ),
+    ({"agents": {"a": {}, "b": {"body": {"kind": "man"}}}}, "agents.b.body.kind is 'man'; allowed"),
     ({"agents": {"a": {}, "b": {"task_settings": {"x": 1}}}}, "agents.b: task_settings: x is 1"),
     ({"agents": {"a": {}, "b": {"task": "Fly"}}}, 'agents.b: no task "Fly"'),
     ({"agents": {"a": {}, "b": {"actions": ["fly"]}}}, 'agents.b: no discrete action "fly"'),

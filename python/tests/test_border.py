@@ -223,7 +223,7 @@ CALLS = [
     ('dwell.World(H, control_rate_hz="x")', "control_rate_hz is 'x'"),
     (
         "dwell.World(H, sound_rate_hz=-1)",
-        "sound_rate_hz is -1; allowed are whole numbers from 0 to",
+        "sound_rate_hz is -1; allowed are whole numbers from 8000 to 192000",
     ),
     ("dwell.World(H, control_rate_hz=0)", "control_rate_hz is 0"),
     ("dwell.World(H, control_rate_hz=1e300)", "control_rate_hz is 1e+300"),

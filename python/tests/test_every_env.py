@@ -98,5 +98,8 @@ def test_bits_are_the_same_whoever_steps_and_after_a_restore(env_id: str, mode: 
 def test_check_env_has_nothing_to_say_of_any_sensor(sensor: dict[str, Any]) -> None:
     task = (sensor["goal_tasks"] or ["Free"])[0]
     settings = PICTURE if sensor["picture_style"] is not None else {}
-    env = DwellEnv(task, houses="builtin:apartment", sensors={sensor["name"]: settings})
+    on_wheels = {"agents": [{"locomotion": "differential_drive"}]}
+    world = on_wheels if sensor["name"] == "wheel_odometry" else None
+    sensors = {sensor["name"]: settings}
+    env = DwellEnv(task, houses="builtin:apartment", sensors=sensors, world=world)
     check_env(env, skip_render_check=True)

@@ -223,6 +223,11 @@ def test_houses_that_were_deleted_are_made_again(tmp_path: Path, generate: Comma
     geometry.write_bytes(geometry.read_bytes()[:-1])
     assert json.loads(generate(*two).stdout)["made_now"] == 1
     assert content(out) == before
+    # And one that lost a file.
+    geometry.unlink()
+    (out / rows(out / "manifest.jsonl")[1]["path"] / "house.json").unlink()
+    assert json.loads(generate(*two).stdout)["made_now"] == 2
+    assert content(out) == before
     # What this version does not make is not passed off as what the manifest names.
     manifest = out / "manifest.jsonl"
     other = [{**row, "hash": "0"} for row in rows(manifest)]

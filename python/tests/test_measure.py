@@ -269,7 +269,7 @@ def test_a_channel_is_named_by_text(tmp_path: Path) -> None:
     bodies = {"file": "x.csv", "episode": "e", "name": "t", "mass_kg": "m", "diameter_m": "d"}
     mapping = {"kind": "trajectory", "title": "t", "licence": "l", "bodies": bodies, "table": part}
     told = refused(table, tmp_path=tmp_path, mapping=mapping)
-    assert "channels.y is 5; text is needed" in told
+    assert "channels.y is 5; the name of a column (text) is needed" in told
 
 
 def refused(*tables: Path, tmp_path: Path, mapping: dict[str, object]) -> str:

@@ -69,6 +69,25 @@ def test_parts_that_are_too_short_are_left_out(tmp_path: Path) -> None:
     assert "1 parts of fewer than 6 rows (3 rows): left out" in counts["notes"]
 
 
+def short(rows: Rows) -> None:
+    """A fifth episode, of three rows."""
+    rows.extend([["stump", *row[1:]] for row in rows[:3]])
+
+
+@pytest.mark.parametrize(
+    ("mapping", "fewest"), [(POSES, 6), ({**DRIVE, "episodes": None}, 42)], ids=["poses", "drive"]
+)
+def test_episodes_of_too_few_rows_are_left_out_where_the_map_says_so(
+    tmp_path: Path, mapping: dict[str, Any], fewest: int
+) -> None:
+    told = refused(tmp_path, mapping, short)
+    assert f"data.csv, episode stump: 3 rows, at least {fewest} are needed; or write " in told
+    assert told.endswith('"cleaning": {"short_episodes": "leave_out"} in the map\'s table')
+    counts = brought(tmp_path, cleaned(mapping, short_episodes="leave_out"), short)
+    assert counts["episodes"] == 4
+    assert counts["notes"] == [f"1 episode of fewer than {fewest} rows: left out 'stump' (3 rows)"]
+
+
 def test_starts_follow_their_samples_into_the_parts(tmp_path: Path) -> None:
     starts = {
         "file": "index.csv",

@@ -18,6 +18,7 @@ from test_slips import DRIVE, FLIGHT, POSES, brought
 import dwell
 from dwell import cli
 from dwell.calibration import Recorder, coverage
+from dwell.measured.importing import import_files
 
 DT_S = 0.02
 
@@ -156,16 +157,86 @@ def test_what_comes_after_a_bundle_is_put_into_it(tmp_path: Path) -> None:
     recorder.write()
     recorder.reset()
     recorder.step(np.array([10.0]))
-    with pytest.raises(dwell.MeasuredDataError, match="episode e5: 2 rows"):
+    log = tmp_path / "a.log.csv"
+    before = log.read_text()
+    # As a disk does that a robot's own program spoils.
+    log.write_text(before.replace("e2,", "e2,,"))
+    with pytest.raises(dwell.MeasuredDataError, match=r"a\.log\.csv"):
         recorder.write()
     # The bundle that was there is there, and nothing else.
     assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4"]
     assert {path.name for path in tmp_path.iterdir()} == {"a.measured", "a.log.csv", "a.map.json"}
-    log = (tmp_path / "a.log.csv").read_text().splitlines(keepends=True)
-    (tmp_path / "a.log.csv").write_text("".join(log[:-2]))
+    log.write_text(before)
     played(recorder, 1)
     recorder.close()
     assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4", "e6"]
+
+
+CUT_SHORT = "1 episode of fewer than 6 rows: left out 'e5' (2 rows)"
+
+
+@pytest.mark.parametrize("error", [KeyboardInterrupt, RuntimeError])
+def test_what_ends_a_block_comes_out_and_whole_episodes_are_the_bundle(
+    tmp_path: Path, error: type[BaseException], caplog: pytest.LogCaptureFixture
+) -> None:
+    def stopped() -> None:
+        with Recorder(Arm(), tmp_path / "a.measured", MAP, step_s=DT_S) as recorder:
+            played(recorder)
+            recorder.reset()
+            recorder.step(np.array([10.0]))
+            raise error("the user's own")
+
+    with pytest.raises(error, match="the user's own"):
+        stopped()
+    assert episodes_of(tmp_path / "a.measured") == ["e1", "e2", "e3", "e4"]
+    assert CUT_SHORT in caplog.text
+    # The files beside it make the same bundle.
+    counts = import_files(
+        [tmp_path / "a.log.csv"], tmp_path / "a.map.json", tmp_path / "b.measured", lambda *_: None
+    )
+    assert counts["notes"] == [CUT_SHORT]
+
+
+def test_what_forbids_the_bundle_does_not_hide_what_ends_a_block(
+    tmp_path: Path, caplog: pytest.LogCaptureFixture
+) -> None:
+    def stopped() -> None:
+        with Recorder(Arm(), tmp_path / "a.measured", MAP, step_s=DT_S) as recorder:
+            recorder.reset()
+            raise KeyboardInterrupt
+
+    with pytest.raises(KeyboardInterrupt):
+        stopped()
+    told = "fewer than 6 rows: left out 'e1' (1 rows); none is left"
+    assert (
+        f"a.measured was not written: {tmp_path / 'a.log.csv'}: 1 episode of {told}" in caplog.text
+    )
+    with (
+        pytest.raises(dwell.MeasuredDataError, match="3 episodes"),
+        Recorder(Arm(), tmp_path / "b.measured", MAP, step_s=DT_S) as recorder,
+    ):
+        played(recorder, 3)
+
+
+def test_an_interrupt_while_a_row_is_written_does_not_write_it_twice(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    recorder = Recorder(Arm(), tmp_path / "a.measured", MAP, step_s=DT_S)
+    played(recorder)
+    recorder.reset()
+    write = Recorder._write
+
+    def interrupted(self: Recorder[Any, Any], row: Any) -> None:  # noqa: ANN401
+        write(self, row)
+        raise KeyboardInterrupt
+
+    with monkeypatch.context() as patched:
+        patched.setattr(Recorder, "_write", interrupted)
+        with pytest.raises(KeyboardInterrupt):
+            recorder.step(np.array([10.0]))
+    recorder.close()
+    rows = (tmp_path / "a.log.csv").read_text().splitlines()
+    assert [row.split(",")[0] for row in rows].count("e5") == 1
 
 
 def test_steps_without_a_reset_are_not_recorded(tmp_path: Path) -> None:

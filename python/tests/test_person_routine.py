@@ -82,7 +82,8 @@ def test_what_cannot_be_done_is_reported() -> None:
     [
         ({"25:00": "Find the sofa."}, "expected HH:MM"),
         ({"07:00": "The sofa is red."}, "expected a request"),
-        ({"07:00": "Fly."}, "fly"),
+        ({"07:00": "Fly."}, r"^errands\[07:00\]: .*fly"),
+        ({"07:00": "Find the sofa.", "07:10": ""}, r"^errands\[07:10\]: the text has no words"),
         ({7: "Find the sofa."}, "7"),
     ],
 )

@@ -13,7 +13,7 @@ import pytest
 
 import dwell
 from dwell import cli
-from dwell.envs import DwellEnv, ReplayRecorder
+from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
 from dwell.sounds import read_wav
 
 pytestmark = pytest.mark.usefixtures("open_once")
@@ -142,8 +142,52 @@ def test_what_no_file_can_hold_is_refused(tmp_path: Path, apartment: dwell.House
     env.restore(snapshot)
     with pytest.raises(dwell.UsageError, match="something else than an action"):
         recorder.step(np.int64(1))
+    recorder.close()
     with pytest.raises(dwell.ConfigError, match="expected an environment of dwell"):
         ReplayRecorder(gymnasium.make("CartPole-v1"), tmp_path)  # type: ignore[arg-type] # the fault
+
+
+def test_steps_before_a_change_that_no_file_holds_are_written(tmp_path: Path) -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"])
+    recorder = ReplayRecorder(env, tmp_path)
+    recorder.reset(seed=1)
+    for _ in range(3):
+        recorder.step(np.int64(1))
+    env.world.listen()
+    # Nothing goes on without a record, nor without a word.
+    for _ in range(2):
+        with pytest.raises(
+            dwell.UsageError, match=r"are written in .*episode_0000\.replay; reset b"
+        ):
+            recorder.step(np.int64(1))
+    recorder.reset(seed=2)
+    env.world.listen()
+    with pytest.raises(dwell.UsageError, match="no step was made before; reset begins another"):
+        recorder.step(np.int64(1))
+    recorder.reset(seed=3)
+    recorder.step(np.int64(2))
+    recorder.close()
+    before, after = (dwell.Replay.read(path) for path in sorted(tmp_path.iterdir()))
+    assert before.actions == ("move_forward",) * 3
+    assert before.differences() == []
+    assert after.actions == ("turn_left",)
+
+
+def test_of_environments_that_step_together_the_changed_one_is_told_once(tmp_path: Path) -> None:
+    bare = DwellVectorEnv(2, "Free", houses="builtin:studio", sensors=["gps"])
+    envs = VectorReplayRecorder(bare, tmp_path)
+    envs.reset(seed=1)
+    saved = bare.snapshot()
+    envs.step(np.array([1, 1]))
+    bare.restore([None, saved[1]])
+    told = r"world of environment 1 was .* its steps are made without a record$"
+    with pytest.raises(dwell.UsageError, match=told):
+        envs.step(np.array([1, 1]))
+    envs.step(np.array([2, 1]))
+    envs.close()
+    changed, other = (dwell.Replay.read(path) for path in sorted(tmp_path.iterdir()))
+    assert changed.actions == ("move_forward",)
+    assert other.actions == ("move_forward", "turn_left")
 
 
 WRONG: list[tuple[str, object, str]] = [

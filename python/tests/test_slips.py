@@ -477,7 +477,7 @@ def test_columns_that_are_called_otherwise_are_offered(tmp_path: Path) -> None:
     assert "no column 't_s'; it has ['episode', 't [s]', 'x (m)', 'y', 'z']" in told
     assert "write 't [s]' in the map" in told
     told = refused(tmp_path, FLIGHT, form=lambda text: text.replace("t_s,x,y", "t_s,x,x"))
-    assert "column 'x' stands 2 times" in told
+    assert "2 columns are called 'x', and the map names one of them; give each a name" in told
 
 
 @pytest.mark.parametrize(

@@ -98,3 +98,9 @@ def test_what_is_no_sound_is_refused(tmp_path: Path) -> None:
         file.writeframes(b"abcabc")
     with pytest.raises(dwell.MeasuredDataError, match="8 bits"):
         read_wav(path)
+
+
+def test_laws_that_change_no_sound_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    house = dwell.House.shoebox((4.0, 2.5, 3.0))
+    dwell.AcousticScene(house, laws={"drag": {"c_d": 0.5}, "source_gain": {"gain_db": 3.0}})
+    assert caplog.messages == ["laws: drag: no law of sound; an AcousticScene is as without"]

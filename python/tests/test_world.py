@@ -406,8 +406,14 @@ def test_one_object_is_asked_for_by_its_name_or_id(apartment: dwell.House) -> No
         assert world.object(row["name"]) == row == world.object(np.int32(row["id"]))
     with pytest.raises(dwell.ConfigError, match=r'no object "radio"; .*"radio_1"'):
         world.object("radio")
-    with pytest.raises(dwell.ConfigError, match="no object 0"):
+    with pytest.raises(dwell.ConfigError, match=r"no object 0; objects have the ids [0-9]+ to"):
         world.object(0)
+    with pytest.raises(dwell.ConfigError, match=r"no object 1 .it is the piece .* of the building"):
+        world.object(1)
+    with pytest.raises(
+        dwell.ConfigError, match=rf"of the {len(rows)} the nearest are .*\"radio_1\""
+    ):
+        world.act("pick", "radio")
     for wrong in (-1, 1.5, None, True, ["radio_1"]):
         with pytest.raises(dwell.ConfigError, match="name is"):
             world.object(wrong)  # type: ignore[arg-type] # the fault

@@ -9,6 +9,7 @@ pub mod sensing;
 pub mod tidiness;
 pub mod validity;
 
+use dwell::sensors::SensorKind;
 use dwell::{Engines, Env, EnvConfig, SensorConfig, WorldError};
 use dwell_houses::{Robot, open_robot};
 use dwell_scene::{LawInfo, LawSpec};
@@ -126,14 +127,16 @@ fn small_sensor(name: &str) -> SensorConfig {
     }
 }
 
-/// An environment in the apartment with every sensor but those of goals, `semantic` by each table of classes, all small.
+/// An environment in the apartment with every sensor but those of goals and of wheels, `semantic` by each table of classes, all small.
 ///
 /// # Panics
 /// When the task or a law does not exist.
 pub fn env_of_every_sensor(config: EnvConfig) -> Env {
     let mut sensors = Vec::new();
     let kinds = dwell::sensors::all().iter();
-    for kind in kinds.filter(|kind| kind.goal_part.is_none()) {
+    let of_all =
+        |kind: &&SensorKind| kind.goal_part.is_none() && kind.name != observations::OF_WHEELS;
+    for kind in kinds.filter(of_all) {
         let one = small_sensor(kind.name);
         let tables = if kind.name == "semantic" {
             &["fine", "nyu40"][..]

@@ -4,10 +4,13 @@ use dwell::Batch;
 use dwell::sensors::{self, Dtype, ObservationBuffer};
 use dwell::tasks::TaskKind;
 
-/// The names of the sensors that go with every task.
+/// The sensor that agents on legs do not have.
+pub const OF_WHEELS: &str = "wheel_odometry";
+
+/// The names of the sensors that go with every task and every body.
 pub fn all_sensors() -> Vec<&'static str> {
     let kinds = sensors::all().iter();
-    let kinds = kinds.filter(|kind| kind.goal_part.is_none());
+    let kinds = kinds.filter(|kind| kind.goal_part.is_none() && kind.name != OF_WHEELS);
     kinds.map(|kind| kind.name).collect()
 }
 

@@ -19,6 +19,7 @@ pub mod law;
 pub mod material;
 pub mod math;
 mod mesh;
+pub mod name_suggestions;
 pub mod navigation;
 pub mod packing;
 pub mod parallel;

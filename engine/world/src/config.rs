@@ -17,6 +17,7 @@ pub struct WorldConfig {
     /// Physics steps per second; a whole multiple of the control rate, default 120.
     pub physics_rate_hz: f64,
     /// Sound samples per second; 8,000 to 192,000, default 16,000; a whole number of samples must fit a control step.
+    #[schemars(range(min = 8_000, max = 192_000))]
     pub sound_rate_hz: u32,
     /// How carefully sound is traced: `"rl"` (fast, default), `"full"` or `"reference"` (slow).
     #[schemars(extend("enum" = AcousticConfig::PRESETS))]

@@ -52,6 +52,18 @@ pub enum WorldError {
         /// The names that exist.
         known: Vec<String>,
     },
+    /// A name that none of many things has.
+    #[error("no {kind} {name:?}; {}", nearest_of(*of, near))]
+    UnknownOfMany {
+        /// The kind of name.
+        kind: &'static str,
+        /// The name.
+        name: String,
+        /// The number of names that exist.
+        of: usize,
+        /// Those of them that are most like it.
+        near: Vec<String>,
+    },
     /// A house in which a task cannot be played.
     #[error("task {task} cannot be played in house {house:?}: {why}")]
     TaskNotPlayable {
@@ -71,6 +83,15 @@ pub enum WorldError {
     /// A snapshot that cannot be used here.
     #[error("snapshot refused: {0}")]
     Snapshot(String),
+}
+
+/// What there is in place of a name.
+fn nearest_of(of: usize, near: &[String]) -> String {
+    match of {
+        0 => "there are none".to_owned(),
+        _ if of == near.len() => format!("there are {near:?}"),
+        _ => format!("of the {of} the nearest are {near:?}"),
+    }
 }
 
 /// The error for an agent that does not act; `agent`: its place among the `count` of those who do.

@@ -8,7 +8,7 @@ import re
 from collections.abc import Iterator, Mapping, Sequence
 from typing import Any, TypedDict
 
-from dwell import ConfigError, DwellError, _native
+from dwell import ConfigError, DwellError, SceneError, _native
 from dwell.arguments import (
     abbreviated_list,
     boolean,
@@ -118,8 +118,8 @@ class AgentRoster:
         for k, (name, settings) in enumerate(zip(names, own, strict=True)):
             with of_agents(names, name):
                 rows.append(_row(f"agents.{name}", k, settings))
-        with of_agents(names):
-            stated = bodies([settings.get("body", {}) for settings in own])
+        places = [f"agents.{name}.body" for name in names]
+        stated = bodies([settings.get("body", {}) for settings in own], places)
         return cls(
             names,
             rows,
@@ -157,10 +157,12 @@ def of_agents(names: Sequence[str], name: str | None = None) -> Iterator[None]:
     try:
         yield
     except DwellError as error:
+        # What the scene refuses of an agent is its body.
+        part = ".body" if isinstance(error, SceneError) else ""
         told = re.sub(
             r"\bagents\[(\d+)\]",
             lambda found: (
-                f"agents.{names[int(found[1])]}" if int(found[1]) < len(names) else found[0]
+                f"agents.{names[int(found[1])]}{part}" if int(found[1]) < len(names) else found[0]
             ),
             str(error),
         )

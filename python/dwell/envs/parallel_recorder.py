@@ -18,7 +18,7 @@ from dwell.envs.agent_forms import AgentForms
 from dwell.envs.agent_settings import AgentRoster
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.parallel import DwellParallelEnv
-from dwell.envs.recorder import EPISODE_IS_FULL, refuse_what_files_cannot_name, write_numbered
+from dwell.envs.recorder import cut_short, refuse_what_files_cannot_name, write_numbered
 from dwell.files import make_folder
 from dwell.replay_agents import ReplayAgent
 from dwell.replays import MAX_STEPS, Replay
@@ -69,6 +69,8 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: EpisodeOfAgents | None = None
+        #: Why no further step of the episode is recorded.
+        self._cut_short: str | None = None
 
     def reset(
         self, seed: int | None = None, options: dict[str, Any] | None = None
@@ -77,6 +79,7 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         self._write()
         observations, infos = self.env.reset(seed=seed, options=options)
         about = next(iter(infos.values()))
+        self._cut_short = None
         ids = (str(about["scene_id"]), str(about["episode_id"]))
         self._running = EpisodeOfAgents(self._env, 0, *ids)
         return observations, infos
@@ -86,18 +89,16 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
 
         Raises:
             UsageError: Something else changed the world since the last step, such as a restored
-                snapshot; no file can hold that. Or the episode is longer than any file holds.
+                snapshot; no file can hold that. Or the episode is longer than any file holds. The
+                steps before are written; until ``reset`` all further ones are refused.
             OSError: The episode ended and cannot be written; it is kept.
         """
         running, live = self._running, [*self._env.agents]
         if running is not None and live:
-            # Not written where it is refused.
+            self._cut_short = cut_short(running, self._env.state_hash(), self._folder)
+        if self._cut_short is not None:
             self._running = None
-            running.check(self._env.state_hash(), "the world")
-            self._running = running
-            if running.is_full:
-                self._write()
-                raise UsageError(EPISODE_IS_FULL)
+            raise UsageError(self._cut_short)
         answer: Step = self.env.step(actions)
         if running is not None and live:
             taken = self._env._forms.one(actions, live)
@@ -132,6 +133,8 @@ class InNamedRoles(Protocol):
 class EpisodeOfAgents:
     """An episode of several agents that is being recorded."""
 
+    acts = "actions"
+
     def __init__(self, env: InNamedRoles, number: int, scene: str, episode_id: str) -> None:
         """An episode has begun.
 
@@ -161,19 +164,6 @@ class EpisodeOfAgents:
         self._actions: list[dict[str, Any]] = []
         self._hashes = [f"{batch.state_hash(number):016x}"]
 
-    def check(self, state_hash: int, what: str) -> None:
-        """Refuses a world that is not as the last step left it; ``what``: its owner.
-
-        Raises:
-            UsageError: No file can hold how it came there.
-        """
-        if f"{state_hash:016x}" != self._hashes[-1]:
-            raise UsageError(
-                f"{what} was changed since the last step by something else than actions (also by "
-                "listen, which opens ears: name the sensor audio instead); its episode cannot be "
-                "recorded further; reset begins another"
-            )
-
     def stepped(
         self,
         actions: Mapping[int, str | dict[str, Any]],
@@ -198,10 +188,10 @@ class EpisodeOfAgents:
                     ended=len(self._actions) if terminated[k] else None,
                 )
 
-    def write(self, folder: Path) -> None:
+    def write(self, folder: Path) -> Path | None:
         """Writes the steps so far, if there are any."""
         if not self._actions:
-            return
+            return None
         replay = dataclasses.replace(
             self._replay,
             actions=tuple(self._actions),
@@ -209,7 +199,12 @@ class EpisodeOfAgents:
             success=self._agents[0].success,
             agents=tuple(self._agents),
         )
-        write_numbered(replay, folder)
+        return write_numbered(replay, folder)
+
+    @property
+    def last_hash(self) -> str:
+        """Of the world after the last step, as files hold it."""
+        return self._hashes[-1]
 
     @property
     def is_full(self) -> bool:

@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import ConfigError, UsageError
+from dwell import ConfigError
 from dwell.arguments import file_path, quoted
 from dwell.envs.action_modes import EngineActions
 from dwell.envs.parallel_recorder import EpisodeOfAgents
 from dwell.envs.parallel_vector import DwellParallelVectorEnv
-from dwell.envs.recorder import EPISODE_IS_FULL, refuse_what_files_cannot_name
+from dwell.envs.recorder import refuse_cut_short, refuse_what_files_cannot_name
 from dwell.files import make_folder
 
 ByAgent = dict[str, dict[str, Any]]
@@ -92,7 +92,9 @@ class ParallelVectorReplayRecorder:
 
         Raises:
             UsageError: Something else changed a world since the last step, such as a restored
-                snapshot; no file can hold that. Or an episode is longer than any file holds.
+                snapshot; no file can hold that. Or an episode is longer than any file holds. The
+                steps before are written; further ones go on, and are not recorded in this
+                environment until its next episode.
             OSError: An episode ended and cannot be written; it is kept.
         """
         return self.env.step(actions)
@@ -105,15 +107,9 @@ class ParallelVectorReplayRecorder:
 
     def check(self) -> None:
         """A step is about to be made; see :meth:`step` for what is refused."""
+        batch = self.env._runner.batch
         for k, running in [*self._running.items()]:
-            # Not written where it is refused.
-            del self._running[k]
-            state_hash = self.env._runner.batch.state_hash(k)
-            running.check(state_hash, f"the world of environment {k}")
-            self._running[k] = running
-            if running.is_full:
-                self._write(k)
-                raise UsageError(f"environment {k}: {EPISODE_IS_FULL}")
+            refuse_cut_short(self._running, k, running, batch.state_hash(k), self._folder)
 
     def stepped(
         self, actions: Sequence[EngineActions], answer: Mapping[str, Any], over: NDArray[np.bool_]

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import dataclasses
 import os
-from collections.abc import Mapping, Sequence
+from collections.abc import Mapping, MutableMapping, Sequence
 from pathlib import Path
 from typing import Any, Protocol
 
@@ -24,12 +24,61 @@ from dwell.heads import Head
 from dwell.replays import MAX_STEPS, Replay
 from dwell.stated_episodes import seed_of
 
-#: Why an episode goes on no further.
-EPISODE_IS_FULL = f"{MAX_STEPS} steps are written, all that a file holds; reset begins another"
+
+class RunningEpisode(Protocol):
+    """An episode that is being recorded."""
+
+    #: What changes its world, in a word.
+    acts: str
+
+    @property
+    def last_hash(self) -> str:
+        """Of the world after the last step, as files hold it."""
+
+    @property
+    def is_full(self) -> bool:
+        """True if no file holds a further step."""
+
+    def write(self, folder: Path) -> Path | None:
+        """Writes the steps so far, if there are any."""
+
+
+def cut_short(
+    running: RunningEpisode, state_hash: int, folder: Path, whose: str = ""
+) -> str | None:
+    """Why an episode cannot be recorded further, once its steps so far are written.
+
+    Args:
+        running: The episode.
+        state_hash: Of its world as it is now.
+        folder: Takes the file.
+        whose: Of which of several environments.
+
+    Returns:
+        A sentence; ``None`` where the next step can be recorded.
+
+    Raises:
+        OSError: It cannot be written.
+    """
+    if f"{state_hash:016x}" != running.last_hash:
+        why = (
+            f"the world{whose} was changed since the last step by something else than "
+            f"{running.acts} (also by listen, which opens ears: name the sensor audio instead); "
+            "its episode cannot be recorded further"
+        )
+    elif running.is_full:
+        why = f"the episode{whose} has {MAX_STEPS} steps, all that a file holds"
+    else:
+        return None
+    file = running.write(folder)
+    kept = "no step was made before" if file is None else f"the steps before are written in {file}"
+    return f"{why}; {kept}; reset begins another"
 
 
 class _EpisodeInProgress:
-    """An episode that is being recorded."""
+    """An episode of one agent that is being recorded."""
+
+    acts = "an action"
 
     def __init__(
         self,
@@ -55,36 +104,28 @@ class _EpisodeInProgress:
         self._hashes = [f"{state_hash:016x}"]
         self._success = False
 
-    def check(self, state_hash: int, what: str) -> None:
-        """Refuses a world that is not as the last step left it; ``what``: its owner.
-
-        Raises:
-            UsageError: No file can hold how it came there.
-        """
-        if f"{state_hash:016x}" != self._hashes[-1]:
-            raise UsageError(
-                f"{what} was changed since the last step by something else than an action (also by "
-                "listen, which opens ears: name the sensor audio instead); its episode cannot be "
-                "recorded further; reset begins another"
-            )
-
     def stepped(self, action: str | dict[str, Any], state_hash: int, success: bool) -> None:
         """A step was made, by an action as files hold it."""
         self._actions.append(action)
         self._hashes.append(f"{state_hash:016x}")
         self._success = success
 
-    def write(self, folder: Path) -> None:
+    def write(self, folder: Path) -> Path | None:
         """Writes the steps so far, if there are any."""
         if not self._actions:
-            return
+            return None
         replay = dataclasses.replace(
             self._replay,
             actions=tuple(self._actions),
             hashes=tuple(self._hashes),
             success=self._success,
         )
-        write_numbered(replay, folder)
+        return write_numbered(replay, folder)
+
+    @property
+    def last_hash(self) -> str:
+        """Of the world after the last step, as files hold it."""
+        return self._hashes[-1]
 
     @property
     def is_full(self) -> bool:
@@ -118,11 +159,39 @@ def write_numbered(replay: Replay, folder: Path) -> Path:
         number += 1
 
 
+def refuse_cut_short(
+    all_running: MutableMapping[int, Any],
+    number: int,
+    running: RunningEpisode,
+    state_hash: int,
+    folder: Path,
+) -> None:
+    """Refuses one step of environments of which one's episode cannot be recorded further.
+
+    Args:
+        all_running: By environment; the one that is refused leaves them.
+        number: Of the environment.
+        running: Its episode.
+        state_hash: Of its world as it is now.
+        folder: Takes the file.
+
+    Raises:
+        UsageError: It cannot.
+        OSError: It cannot be written; it is kept.
+    """
+    told = cut_short(running, state_hash, folder, f" of environment {number}")
+    if told is not None:
+        del all_running[number]
+        raise UsageError(f"{told}, and until then its steps are made without a record")
+
+
 class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]):
     """Writes every episode of an environment into a folder, as ``episode_0000.replay`` and so on.
 
     A file is written when its episode ends, when the next one begins, or at ``close``; numbers go
     on behind the files that are there, also where several processes record into one folder. Where
+    something else than a step changes the world, the steps before it are written, and every
+    further one is refused until ``reset``. Where
     it cannot be written, as on a full disk, an ``OSError`` says so, and the episode is kept:
     ``reset`` and ``close`` write it once there is room. :class:`dwell.Replay` reads the files.
 
@@ -163,6 +232,8 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         self._folder = Path(file_path("folder", folder))
         make_folder(self._folder)
         self._running: _EpisodeInProgress | None = None
+        #: Why no further step of the episode is recorded.
+        self._cut_short: str | None = None
 
     def reset(
         self, *, seed: int | None = None, options: dict[str, Any] | None = None
@@ -172,6 +243,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         observation, info = self.env.reset(seed=seed, options=options)
         instruction, state_hash = self._env.instruction(), self._env.state_hash()
         stated = self._env.stated_episode()
+        self._cut_short = None
         self._running = _EpisodeInProgress(self._env, info, instruction, state_hash, stated)
         return observation, info
 
@@ -183,18 +255,16 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
 
         Raises:
             UsageError: Something else changed the world since the last step, such as a restored
-                snapshot; no file can hold that. Or the episode is longer than any file holds.
+                snapshot; no file can hold that. Or the episode is longer than any file holds. The
+                steps before are written; until ``reset`` all further ones are refused.
             OSError: The episode ended and cannot be written; it is kept.
         """
         running = self._running
         if running is not None:
-            # Not written where it is refused.
+            self._cut_short = cut_short(running, self._env.state_hash(), self._folder)
+        if self._cut_short is not None:
             self._running = None
-            running.check(self._env.state_hash(), "the world")
-            self._running = running
-            if running.is_full:
-                self._write()
-                raise UsageError(EPISODE_IS_FULL)
+            raise UsageError(self._cut_short)
         observation, reward, terminated, truncated, info = self.env.step(action)
         if running is not None:
             row = self._env._actions.one(action).row(0)
@@ -276,17 +346,14 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
 
         Raises:
             UsageError: Something else changed a world since the last step, such as a restored
-                snapshot; no file can hold that. Or an episode is longer than any file holds.
-            OSError: An episode that is as long cannot be written; it is kept.
+                snapshot; no file can hold that. Or an episode is longer than any file holds. The
+                steps before are written; further ones go on, and are not recorded in this
+                environment until its next episode.
+            OSError: An episode cannot be written; it is kept.
         """
+        batch = self._envs._runner.batch
         for k, running in [*self._running.items()]:
-            # Not written where it is refused.
-            del self._running[k]
-            running.check(self._envs._runner.batch.state_hash(k), f"the world of environment {k}")
-            self._running[k] = running
-            if running.is_full:
-                self._write(k)
-                raise UsageError(f"environment {k}: {EPISODE_IS_FULL}")
+            refuse_cut_short(self._running, k, running, batch.state_hash(k), self._folder)
 
     def stepped(
         self,

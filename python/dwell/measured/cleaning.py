@@ -1,4 +1,4 @@
-"""What becomes of rows out of order, rows that stand twice, repeated frames and gaps.
+"""What becomes of rows out of order, rows that stand twice, repeated frames, gaps and stumps.
 
 Nothing is done to them unless the map says so: without its word they are refused, by a sentence
 that says what to write.
@@ -38,11 +38,12 @@ class Cleaning:
     """The key ``cleaning`` of a table."""
 
     def __init__(self, told: Mapping[str, Any], at: str) -> None:
-        """The four words, each of which may be left out."""
+        """The words, each of which may be left out."""
         self.unsorted = choice(told, "unsorted", ("sort",), at)
         self.duplicates = choice(told, "duplicates", ("leave_out",), at)
         self.repeated = choice(told, "repeated_frames", ("leave_out", "keep"), at)
         self.gaps = choice(told, "gaps", ("split",), at)
+        self.short_episodes = choice(told, "short_episodes", ("leave_out",), at)
         self.left_out: dict[str, int] = {}
 
     def ordered(self, episode: Episode, clock: str, columns: Sequence[str]) -> Episode:
@@ -135,6 +136,33 @@ class Cleaning:
             )
         if short:
             notes.append(f"{short:,} parts of fewer than {fewest} rows ({lost:,} rows): left out")
+        return found
+
+    def without_short(
+        self, episodes: list[Episode], fewest: int, name: str, notes: list[str]
+    ) -> list[Episode]:
+        """Episodes of enough samples, where the map says that others are left out.
+
+        Raises:
+            ValueError: None has so many.
+        """
+        if self.short_episodes is None:
+            return episodes
+        found = [episode for episode in episodes if len(episode.times) >= fewest]
+        short = [episode for episode in episodes if len(episode.times) < fewest]
+        if not short:
+            return episodes
+        listed = ", ".join(
+            f"{episode.name!r} ({len(episode.times)} rows)" for episode in short[:10]
+        )
+        more = ", ..." if len(short) > 10 else ""
+        plural = "s" if len(short) > 1 else ""
+        told = (
+            f"{len(short):,} episode{plural} of fewer than {fewest} rows: left out {listed}{more}"
+        )
+        if not found:
+            raise ValueError(f"{name}: {told}; none is left")
+        notes.append(told)
         return found
 
     def _count(self, what: str, count: int) -> None:

@@ -61,6 +61,8 @@ class BundleDraft:
         self._clock = self._name = ""
         #: What becomes of gaps, for who can have it otherwise.
         self.gap_hint = ""
+        #: What becomes of episodes of too few rows, likewise.
+        self.short_hint = ""
 
     def measured(self, table: str, clock: str, episode: str) -> None:
         """Says which table holds the samples, and its columns of times and of episodes."""
@@ -89,7 +91,10 @@ class BundleDraft:
 
     def told(self, fault: str, out: Path) -> str:
         """A fault of the bundle as one of the user's files."""
-        told = self._told(fault, out)
+        # Its rows are those of the user's table.
+        told = re.sub(r"\b(rows?) of [a-z]+\.csv\b", r"\1", self._told(fault, out))
+        if re.search(r": [0-9]+ rows, at least ", told):
+            return told + self.short_hint
         is_gap = "missing before it" in told or "fill the gap in" in told
         return told + self.gap_hint if is_gap else told
 

@@ -25,6 +25,8 @@ class Numbers:
 #: What a key may hold, for keys that may hold one of several kinds.
 TEXT_OR_LIST: tuple[type, ...] = (str, list)
 TEXT_OR_OBJECT: tuple[type, ...] = (str, dict)
+#: The form of the name of a column, as messages say it.
+COLUMN = "the name of a column (text)"
 #: An object whose keys are names of the user.
 NAMES: Map = {}
 
@@ -55,11 +57,17 @@ TABLE: Map = {
     "episode": TEXT_OR_LIST,
     "split_group": TEXT_OR_LIST,
     "conditions": TEXT_OR_LIST,
-    "t_s": "",
+    "t_s": COLUMN,
     "t_zero": "",
     "seconds_per_unit": 1.0,
     "units": NAMES,
-    "cleaning": {"unsorted": "", "duplicates": "", "repeated_frames": "", "gaps": ""},
+    "cleaning": {
+        "unsorted": "",
+        "duplicates": "",
+        "repeated_frames": "",
+        "gaps": "",
+        "short_episodes": "",
+    },
 }
 
 _KINDS: dict[type, tuple[tuple[type, ...], str]] = {
@@ -137,6 +145,8 @@ def check_keys(found: Map, schema: Map, at: str) -> None:
             expected = " or ".join(names[kind] for kind in form)
         else:
             kinds, expected = _KINDS[type(form)]
+            if isinstance(form, str):
+                expected = form or expected
         if not isinstance(value, kinds) or (isinstance(value, bool) and bool not in kinds):
             raise ValueError(f"{at}: {key} is {value!r:.60}; {expected} is needed")
         if isinstance(form, dict) and form:

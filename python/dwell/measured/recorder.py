@@ -5,13 +5,14 @@ from __future__ import annotations
 import csv
 import itertools
 import json
+import logging
 import os
 import shutil
 import tempfile
 import time
 from collections.abc import Callable, Iterator, Mapping
 from pathlib import Path
-from typing import Any, Generic, SupportsFloat, TypeVar, cast
+from typing import Any, Generic, Literal, SupportsFloat, TypeVar, cast
 
 import gymnasium
 import numpy as np
@@ -27,6 +28,7 @@ from dwell.measured.maps import Map
 ObsType = TypeVar("ObsType")
 ActType = TypeVar("ActType")
 
+_LOG = logging.getLogger("dwell.calibration")
 #: Numbers of an observation beyond which it is a picture.
 _MOST_NUMBERS = 4096
 #: Columns that every row has.
@@ -43,7 +45,10 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
     action that was taken then. The rows stand in ``NAME.log.csv`` beside the bundle
     ``NAME.measured`` and the map in ``NAME.map.json``: what the import refuses is not lost.
     Recorded is from a reset to the end of the episode, to the next reset, or to :meth:`write`;
-    steps without a reset before them are the environment's own affair.
+    steps without a reset before them are the environment's own affair. Episodes that are cut so
+    short that nothing can be predicted from them are left out of the bundle, and told. Where an
+    exception or Ctrl-C ends a ``with`` block, the whole episodes become the bundle, and the
+    exception goes on; what forbids the bundle is then logged (logger ``dwell.calibration``).
 
     Attributes:
         group: Episodes that begin while it stands are held out together; ``None``: each alone.
@@ -126,9 +131,9 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         told = dict(_numbers("action", action))
         wanted = [name for name in self._columns if name.startswith("action")]
         self._refuse_missing([name for name in wanted if name not in told], told)
-        self._write({**before, **told})
-        # An environment that raises leaves an episode that ends with this row.
+        # An environment that raises, or Ctrl-C, leaves an episode that ends with this row.
         self._row = None
+        self._write({**before, **told})
         observation, reward, terminated, truncated, info = super().step(action)
         self._k += 1
         self._row = self._seen(observation, info)
@@ -142,7 +147,8 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         The bundle of an earlier call is replaced, once the new one is whole.
 
         Returns:
-            Counts, as of ``dwell measure import``.
+            Counts, as of ``dwell measure import``; their ``notes`` tell of episodes that were left
+            out.
 
         Raises:
             ConfigError: Nothing was recorded.
@@ -156,6 +162,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
         table = {**self._mapping["table"], "file": self.log_file.name}
         table |= {"episode": "episode", "split_group": "group", "t_s": "t_s"}
         table.setdefault("conditions", "conditions")
+        table["cleaning"] = {"short_episodes": "leave_out", **(table.get("cleaning") or {})}
         mapping = {**self._mapping, "table": table}
         self.map_file.write_text(json.dumps(mapping, indent=1) + "\n", "utf-8")
         counts = self._replaced() if self._has_bundle else self._imported(self._out)
@@ -165,14 +172,37 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
     def close(self) -> None:
         """Writes the bundle, if something was recorded since it was last tried, and closes.
 
+        What was left out is logged as a warning (logger ``dwell.calibration``).
+
         Raises:
             MeasuredDataError: As of :meth:`write`.
         """
         try:
-            if self._has_news or self._row is not None:
-                self.write()
+            self._write_news()
         finally:
             super().close()
+
+    def __exit__(self, *args: object) -> Literal[False]:
+        """Closes; an exception of the block goes on, whatever becomes of the bundle.
+
+        Raises:
+            MeasuredDataError: As of :meth:`close`, where the block had no exception.
+        """
+        if args[:1] not in ((), (None,)):
+            try:
+                self._write_news()
+            except Exception as refused:
+                # What ended the block is what its user looks for.
+                self._has_news = False
+                _LOG.warning("%s was not written: %s", self._out, refused)
+        self.close()
+        return False
+
+    def _write_news(self) -> None:
+        """Writes the bundle if something was recorded since it was last tried."""
+        if self._has_news or self._row is not None:
+            for note in self.write().get("notes", ()):
+                _LOG.warning("%s: %s", self._out, note)
 
     def _imported(self, out: Path) -> dict[str, Any]:
         return import_files([self.log_file], self.map_file, out, lambda *_: None)
@@ -197,9 +227,9 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
 
     def _end(self) -> None:
         """Writes the last observation, after which nothing was done."""
-        if self._row is not None:
-            self._write(self._row)
-        self._row = None
+        last, self._row = self._row, None
+        if last is not None:
+            self._write(last)
 
     def _write(self, row: Mapping[str, float]) -> None:
         self._has_news = True

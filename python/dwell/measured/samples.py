@@ -170,10 +170,16 @@ class SampleReader:
         self._held_unit = None if held is None else units.unit(held.column, held.dimension)
         #: By the user's episode: time as the column has it, value in SI, and where it stands.
         self.held: dict[str, list[tuple[float, float, Place]]] = {}
+        #: The user's episodes that were left out for too few samples.
+        self.short: set[str] = set()
         units.refuse_unused()
         self._from_first = choice(part, "t_zero", ("first",), at) is not None
         self.cleaning = cleaning.Cleaning(part.get("cleaning") or {}, f"{at}: cleaning")
         job.draft.measured(self.table.name, self.clock, "/".join(self.episode))
+        if self.cleaning.short_episodes is None:
+            job.draft.short_hint = (
+                '; or write "cleaning": {"short_episodes": "leave_out"} in the map\'s table'
+            )
         if self.cleaning.gaps is None:
             job.draft.gap_hint = (
                 '; or write "cleaning": {"gaps": "split"} in the map\'s table, which makes an '
@@ -196,7 +202,8 @@ class SampleReader:
 
         Args:
             step_s: The time between samples where it must be even; ``None``: below 0.5 s.
-            fewest: Parts between gaps that have fewer samples are left out.
+            fewest: Parts between gaps that have fewer samples are left out, and whole episodes
+                where the map says so.
             accept: Says whether an episode is kept.
         """
         growing = self._grown(accept)
@@ -219,6 +226,9 @@ class SampleReader:
         seconds = self.clock_unit.factor
         longest = cleaning.Longest(_LONGEST_S if step_s is None else 1.5 * step_s, seconds)
         episodes = self.cleaning.parts(episodes, longest, fewest, self.job.notes)
+        enough = self.cleaning.without_short(episodes, fewest, self.table.name, self.job.notes)
+        self.short = {e.source for e in episodes} - {e.source for e in enough}
+        episodes = enough
         for episode in episodes:
             self.job.draft.begins(episode.name, episode.place(0))
         in_si = [replace(episode, values=self._si(episode.values)) for episode in episodes]

@@ -12,7 +12,7 @@ use dwell_tests::observations::observe;
 use serde_json::{Value, json};
 
 /// Sensors of an agent's position and motion.
-const OWN: [&str; 4] = ["gps", "compass", "gyro", "wheel_odometry"];
+const OWN: [&str; 4] = ["gps", "compass", "gyro", "proprioception"];
 
 fn sensors(rows: &[(&str, Value)]) -> Vec<SensorConfig> {
     let sensor = |(kind, settings): &(&str, Value)| SensorConfig {

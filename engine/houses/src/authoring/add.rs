@@ -24,7 +24,7 @@ use crate::building::assembly::HouseAssembly;
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
 use crate::import::{CategoryRow, category, convex_pieces};
-use crate::name_suggestions::nearest_names;
+use dwell_scene::name_suggestions::nearest_names;
 
 /// Longest edge and volume of things that a hand can take, m and m³.
 const HANDY: (f32, f32) = (0.6, 0.05);

@@ -5,7 +5,7 @@ use std::fmt::Display;
 use dwell_scene::material::{Substance, library};
 
 use crate::error::HousesError;
-use crate::name_suggestions::nearest_names;
+use dwell_scene::name_suggestions::nearest_names;
 
 /// Largest number of names that are offered in place of an unknown one.
 pub(super) const MAX_SUGGESTIONS: usize = 6;

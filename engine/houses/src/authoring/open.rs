@@ -1,9 +1,11 @@
 //! Plans of houses, as plain data and as files `NAME.plan.json`.
 
+use std::ffi::OsStr;
 use std::path::Path;
 
 use dwell_scene::House;
 use dwell_scene::parallel::Threads;
+use serde::de::IgnoredAny;
 use serde::{Deserialize, Serialize};
 
 use super::apply::edit;
@@ -11,7 +13,7 @@ use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::Edit;
 use super::files::FileAccess;
 use super::floor_plan::{BuildingPlan, build_house_data};
-use crate::data_root::{UserFile, is_json_containing};
+use crate::data_root::{UserFile, is_json_containing, read_up_to};
 use crate::error::HousesError;
 use crate::formats::{FORMATS, open_by};
 use crate::json;
@@ -161,22 +163,83 @@ fn build_with(
     Ok((house, report))
 }
 
-/// Returns whether `path` names a plan: by its ending, or as a `.json` that says so.
+/// Returns whether `path` names a plan: by its ending, or as a `.json` that says so or has the look of one.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    let named = path.file_name().is_some_and(|name| {
-        name.to_string_lossy()
-            .to_ascii_lowercase()
-            .ends_with(ENDING)
-    });
-    named || is_json_containing(path, &[&["\"dwell-plan\""]])
+    let is_other = || {
+        let others = [
+            crate::habitat::recognizes,
+            crate::procthor::recognizes,
+            crate::measured::recognizes,
+        ];
+        others.iter().any(|recognizes| recognizes(path))
+    };
+    is_named_as_plan(path)
+        || is_json_containing(path, &[&["\"dwell-plan\""]])
+        || (is_json_containing(path, &[&PlanLook::WORDS])
+            && !is_other()
+            && PlanLook::is_that_of(path))
+}
+
+fn is_named_as_plan(path: &Path) -> bool {
+    let lower = |name: &OsStr| name.to_string_lossy().to_ascii_lowercase();
+    path.file_name()
+        .is_some_and(|name| lower(name).ends_with(ENDING))
+}
+
+/// What tells a plan from a house of SUNCG, which may be any `.json`.
+#[derive(Deserialize)]
+struct PlanLook {
+    format: Option<serde_json::Value>,
+    building: Option<IgnoredAny>,
+    edits: Option<IgnoredAny>,
+    levels: Option<IgnoredAny>,
+}
+
+impl PlanLook {
+    /// One of them stands in each.
+    const WORDS: [&'static str; 3] = ["\"format\"", "\"building\"", "\"edits\""];
+
+    fn is_that_of(path: &Path) -> bool {
+        let text = read_up_to(path, "", MAX_TEXT_BYTES).unwrap_or_default();
+        json::from_slice(&text).is_ok_and(|look: Self| {
+            let has_parts = look.building.is_some() || look.edits.is_some();
+            look.levels.is_none() && (look.format.is_some() || has_parts)
+        })
+    }
+
+    /// Refuses a file that names no format, or one of nothing that is opened.
+    fn check_format(text: &[u8], at: &FileLocation) -> Result<(), HousesError> {
+        let Ok(look) = json::from_slice::<Self>(text) else {
+            // What it is instead is told by the reader of plans.
+            return Ok(());
+        };
+        if look.format.as_ref().is_some_and(|format| format == FORMAT) {
+            return Ok(());
+        }
+        let found = look
+            .format
+            .map_or_else(|| "nothing".to_owned(), |format| format.to_string());
+        Err(HousesError::Field {
+            at: at.field("format"),
+            expected: "\"dwell-plan\", the only one that a house's .json names: those of SUNCG, ProcTHOR, Habitat and measured \
+                       rooms have none, and our own houses are opened by their folder NAME.dwell",
+            found: found.chars().take(200).collect(),
+        })
+    }
 }
 
 /// Opens a plan file; the files that it names are read below its folder.
 pub(crate) fn open(path: &Path, threads: Threads) -> OpenResult {
     let UserFile { root, name, bytes } = UserFile::read(path, MAX_TEXT_BYTES)?;
-    let mut plan = HousePlan::from_json(&bytes, &FileLocation::file(&name))?;
+    let at = FileLocation::file(&name);
+    if !is_named_as_plan(path) {
+        PlanLook::check_format(&bytes, &at)?;
+    }
+    let mut plan = HousePlan::from_json(&bytes, &at)?;
     if plan.name.is_empty() && plan.building.is_some() {
-        name[..name.len().saturating_sub(ENDING.len())].clone_into(&mut plan.name);
+        let lower = name.to_ascii_lowercase();
+        let stem = lower.strip_suffix(ENDING).or(lower.strip_suffix(".json"));
+        name[..stem.unwrap_or(&lower).len()].clone_into(&mut plan.name);
     }
     build_with(&plan, &FileAccess::Below(root), threads).map_err(|error| error.in_file(&name))
 }

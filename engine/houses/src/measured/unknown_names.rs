@@ -2,9 +2,9 @@
 
 use super::file::MeasuredRoomFile;
 use crate::error::HousesError;
-use crate::name_suggestions::is_within_edit_distance;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
+use dwell_scene::name_suggestions::is_within_edit_distance;
 
 /// The fields of the file, those of the measurement among them.
 const FIELDS: [&str; 11] = [

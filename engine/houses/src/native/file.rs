@@ -52,3 +52,12 @@ pub(super) fn sound_path(k: usize, name: &str) -> String {
         .find(|known| known.eq_ignore_ascii_case(ending));
     format!("sound_{k}.{}", ending.unwrap_or(&"sound"))
 }
+
+/// Returns whether a file's name is one that [`sound_path`] gives.
+pub(super) fn is_sound(name: &str) -> bool {
+    let number = name
+        .strip_prefix("sound_")
+        .and_then(|rest| rest.split_once('.'))
+        .and_then(|(k, _)| k.parse().ok());
+    number.is_some_and(|k| sound_path(k, name) == name)
+}

@@ -5,7 +5,7 @@ use std::path::{Path, PathBuf};
 
 use dwell_scene::{House, HouseData, IdVec};
 
-use super::file::{FORMAT, NativeFile, VERSION, sound_path};
+use super::file::{FORMAT, NativeFile, VERSION, is_sound, sound_path};
 use super::{GEOMETRY, TABLES};
 use crate::atomic::write_folder;
 use crate::error::HousesError;
@@ -23,7 +23,23 @@ fn check_name(path: &Path) -> Result<(), HousesError> {
     })
 }
 
-/// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path` is replaced.
+/// Returns whether a folder is a house, or holds nothing but what is left of one.
+fn is_house(folder: &Path) -> bool {
+    let has = |name: &str| folder.join(name).is_file();
+    let is_part = |entry: std::io::Result<fs::DirEntry>| {
+        entry.is_ok_and(|entry| {
+            let name = entry.file_name();
+            let is_named =
+                name == TABLES || name == GEOMETRY || name.to_str().is_some_and(is_sound);
+            is_named && entry.path().is_file()
+        })
+    };
+    (has(TABLES) && has(GEOMETRY))
+        || fs::read_dir(folder).is_ok_and(|mut entries| entries.all(is_part))
+}
+
+/// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path`, or what is
+/// left of one, is replaced.
 ///
 /// # Errors
 /// [`HousesError::NotRepresentable`] when the name is not that of a `.dwell`, when the house holds a number that is not finite outside of its meshes, when its geometry
@@ -99,8 +115,7 @@ fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), Hou
             }
         }
     }
-    let is_ours = |path: &Path| path.join(TABLES).is_file() && path.join(GEOMETRY).is_file();
-    write_folder(path, is_ours, |folder| {
+    write_folder(path, is_house, |folder| {
         for (name, bytes) in [(TABLES, &text), (GEOMETRY, &written.file)] {
             let path = folder.join(name);
             fs::write(&path, bytes).map_err(HousesError::io(&path))?;

@@ -151,6 +151,24 @@ fn an_old_house_is_replaced_and_anything_else_is_not() {
         .collect();
     assert_eq!(names, ["a.dwell"], "nothing half-written is left");
 
+    // What is left of one is, too: nothing of anybody else's is lost.
+    for lost in [
+        &["house.json"][..],
+        &["house.glb"],
+        &["house.json", "house.glb"],
+    ] {
+        for name in lost {
+            std::fs::remove_file(path.join(name)).unwrap();
+        }
+        native::write(&larger, &path).unwrap();
+        assert_eq!(open(&path.to_string_lossy()).unwrap().0, larger);
+    }
+    std::fs::remove_file(path.join("house.json")).unwrap();
+    std::fs::write(path.join("notes"), "precious").unwrap();
+    let error = native::write(&larger, &path).unwrap_err().to_string();
+    assert!(error.ends_with("it is not replaced"), "{error}");
+    assert!(path.join("notes").is_file());
+
     let other = folder.path().join("photos.dwell");
     std::fs::create_dir(&other).unwrap();
     std::fs::write(other.join("photo"), "precious").unwrap();

@@ -4,6 +4,11 @@ use super::Address;
 use crate::error::SceneError;
 use crate::house::House;
 use crate::ids::{Entity, EntityId, JointId, MaterialId, ObjectId, PartId};
+use crate::material::library;
+use crate::name_suggestions::nearest_names;
+
+/// Number of names that an error lists, the nearest first.
+const NEAR: usize = 6;
 
 /// Finds an object by its entity id or by name.
 pub(super) fn find_object(
@@ -25,6 +30,16 @@ pub(super) fn find_object(
             "no object {word:?}; objects have the ids {first} to {last}, or names"
         ))
     })
+}
+
+/// What is told of a name that no substance of the library has.
+pub(super) fn no_substance(name: &str) -> String {
+    let known = || library().iter().map(|substance| substance.name.as_str());
+    format!(
+        "no substance {name:?} in the library; of its {} the nearest are {:?}",
+        known().count(),
+        nearest_names(name, known(), NEAR)
+    )
 }
 
 pub(super) fn find_material(
@@ -120,4 +135,16 @@ pub(super) fn find_part_of(
             let known: Vec<_> = object.parts().map(|id| &house.parts[id].name).collect();
             address.invalid(format!("no part {name:?}; the object has {known:?}"))
         })
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_substance_that_there_is_not_is_answered_with_the_nearest() {
+        let told = no_substance("woood");
+        let said = "no substance \"woood\" in the library; of its ";
+        assert!(told.starts_with(said) && told.contains("\"wood"), "{told}");
+    }
 }

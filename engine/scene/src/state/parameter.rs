@@ -5,7 +5,7 @@
 //! of the house: its numbers are set in the state.
 
 use super::joint::FIELDS;
-use super::names::{find_joint, find_material, find_object, find_part};
+use super::names::{find_joint, find_material, find_object, find_part, no_substance};
 use super::{Address, State};
 use crate::error::SceneError;
 use crate::house::House;
@@ -86,7 +86,7 @@ impl State {
             ["pair", pair, field] => {
                 let (a, b) = pair.split_once('~').ok_or_else(|| address.invalid("a pair is written a~b"))?;
                 if let Some(name) = [a, b].into_iter().find(|name| library().get(name).is_none()) {
-                    return Err(address.invalid(format!("no substance {name:?} in the library")));
+                    return Err(address.invalid(no_substance(name)));
                 }
                 let contact = self.pair_contact(a, b);
                 match field {

@@ -56,7 +56,7 @@ impl World {
     /// Reads an action for an agent.
     ///
     /// # Errors
-    /// [`WorldError::Unknown`] for a kind, object or part that no one has; [`WorldError::Config`] for what the kind does
+    /// [`WorldError::Unknown`] for a kind, [`WorldError::UnknownOfMany`] for an object or part that no one has; [`WorldError::Config`] for what the kind does
     /// not take or needs; [`WorldError::Settings`] for a field that cannot be read; [`WorldError::Render`] for an
     /// impossible camera.
     pub fn read_action(
@@ -156,7 +156,10 @@ mod tests {
         assert_reads(r#"{"kind": "place"}"#, &Place { target: None });
         for (text, part) in [
             (r#"{"kind": "fly"}"#, "no action \"fly\"; there are"),
-            (r#"{"kind": "pick", "object": "mug"}"#, "no object \"mug\""),
+            (
+                r#"{"kind": "pick", "object": "mug"}"#,
+                "no object \"mug\"; there are none",
+            ),
             (
                 r#"{"kind": "drop", "object": 1}"#,
                 "drop with object; allowed is drop alone",

@@ -83,7 +83,7 @@ impl TargetRequest {
     /// Returns the target; `None` where none is stated.
     ///
     /// # Errors
-    /// [`WorldError::Unknown`] for an object or part that no one has; [`WorldError::Config`] for several ways at once or a
+    /// [`WorldError::UnknownOfMany`] for an object or part that no one has; [`WorldError::Config`] for several ways at once or a
     /// direction that 32 bits do not hold; [`WorldError::Render`] for an impossible camera.
     pub(super) fn resolve(
         &self,
@@ -166,20 +166,26 @@ impl TargetRequest {
     }
 }
 
-/// The similar names.
-fn similar_names<'a>(name: &str, known: impl Iterator<Item = &'a str>) -> Vec<String> {
-    let near = dwell_houses::nearest_names(name, known, NAMES);
-    near.into_iter().map(str::to_owned).collect()
+/// The error for a name that nothing has.
+fn unknown_of_many<'a>(
+    kind: &'static str,
+    name: &str,
+    known: impl Iterator<Item = &'a str>,
+) -> WorldError {
+    let known: Vec<&str> = known.collect();
+    let near = dwell_houses::nearest_names(name, known.iter().copied(), NAMES);
+    WorldError::UnknownOfMany {
+        kind,
+        name: name.to_owned(),
+        of: known.len(),
+        near: near.into_iter().map(str::to_owned).collect(),
+    }
 }
 
 fn object_named(house: &House, name: &str) -> Result<ObjectId, WorldError> {
-    house.object_named(name).ok_or_else(|| WorldError::Unknown {
-        kind: "object",
-        name: name.to_owned(),
-        known: similar_names(
-            name,
-            house.objects.iter().map(|object| object.name.as_str()),
-        ),
+    house.object_named(name).ok_or_else(|| {
+        let known = house.objects.iter().map(|object| object.name.as_str());
+        unknown_of_many("object", name, known)
     })
 }
 
@@ -187,14 +193,12 @@ fn part_named(house: &House, object: ObjectId, name: &str) -> Result<PartId, Wor
     let mut parts = house.objects[object].parts();
     parts
         .find(|part| house.parts[*part].name == name)
-        .ok_or_else(|| WorldError::Unknown {
-            kind: "part",
-            name: name.to_owned(),
-            known: similar_names(
+        .ok_or_else(|| {
+            let parts = house.objects[object].parts();
+            unknown_of_many(
+                "part",
                 name,
-                house.objects[object]
-                    .parts()
-                    .map(|part| house.parts[part].name.as_str()),
-            ),
+                parts.map(|part| house.parts[part].name.as_str()),
+            )
         })
 }

@@ -8,7 +8,7 @@ use crate::error::WorldError;
 use crate::schema;
 
 const ABOUT: &str = "Rate of turn to the left as the agent's gyro reads it, rad/s: the mean over the last step, with the \
-                     errors that laws give it; shape (1,).";
+                     errors that laws give a base on wheels, without any on legs; shape (1,).";
 
 /// The end of its range, rad/s: 200 turns a second.
 const FULL_SCALE_RAD_S: f32 = 1257.0;

@@ -8,7 +8,16 @@ from typing import Any
 
 from dwell.arguments import finite_number
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, column_list, columns_of, require, require_filled
+from dwell.measured.maps import (
+    COLUMN,
+    TABLE,
+    Job,
+    Map,
+    column_list,
+    columns_of,
+    require,
+    require_filled,
+)
 from dwell.measured.places import Place
 from dwell.measured.readers import Row
 from dwell.measured.samples import Field, SampleReader, fields_of, singles
@@ -56,9 +65,9 @@ _SCHEMA: Map = {
         "metres_per_unit": 1.0,
         "radians_per_unit": 1.0,
         "position": [],
-        "heading_rad": "",
-        "ticks_left": "",
-        "ticks_right": "",
+        "heading_rad": COLUMN,
+        "ticks_left": COLUMN,
+        "ticks_right": COLUMN,
     },
 }
 #: Samples of an episode below which nothing can be predicted.

@@ -9,7 +9,7 @@ import numpy as np
 from dwell.measured import falls
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, require, require_filled
+from dwell.measured.maps import COLUMN, TABLE, Job, Map, require, require_filled
 from dwell.measured.places import Place
 from dwell.measured.samples import Episode, Field, SampleReader, single
 from dwell.measured.tables import MeasuredTable, cell_text
@@ -46,9 +46,9 @@ _SCHEMA: Map = {
         "part": "",
         "units": {},
         "episode": (str, list),
-        "name": "",
-        "mass_kg": "",
-        "diameter_m": "",
+        "name": COLUMN,
+        "mass_kg": COLUMN,
+        "diameter_m": COLUMN,
     },
     "table": {**TABLE, "metres_per_unit": 1.0, "radians_per_unit": 1.0, "channels": {}},
 }
@@ -74,7 +74,7 @@ def _write(job: Job) -> dict[str, Any]:
     channels = require(part, "channels", here)
     for channel, column in channels.items():
         if not isinstance(column, str):
-            raise ValueError(f"{here}: channels.{channel} is {column!r:.60}; text is needed")
+            raise ValueError(f"{here}: channels.{channel} is {column!r:.60}; {COLUMN} is needed")
         if channel not in _CHANNELS:
             raise ValueError(f"{here}: no channel {channel!r}; allowed are {list(_CHANNELS)}")
     axes = Axes(job.mapping, job.at)

@@ -11,6 +11,7 @@ from dwell.measured import rotations
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import (
+    COLUMN,
     TABLE,
     Job,
     Map,
@@ -86,7 +87,7 @@ _SCHEMA: Map = {
         "part": "",
         "units": {},
         "episode": (str, list),
-        "sample": "",
+        "sample": COLUMN,
         "velocity": [],
         "angular_velocity": [],
     },
@@ -222,6 +223,8 @@ def _write_starts(
     with job.draft.table("starts.csv", "episode,sample,vx,vy,vz,wx,wy,wz", origin) as write:
         for place, row in table:
             name = table.text(row, names)
+            if name in reader.short:
+                continue
             count = int(table.number(place, row, sample))
             found = now.get((name, count), (name, count))
             if name in known and (name, count) not in now and _was_left_out(episodes, name, count):

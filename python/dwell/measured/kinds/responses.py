@@ -14,6 +14,7 @@ from dwell import MeasuredDataError, sofa_rooms
 from dwell.measured.axes import Axes
 from dwell.measured.kinds.form import Kind, counted, write_episodes, write_manifest
 from dwell.measured.maps import (
+    COLUMN,
     NAMES,
     TEXT_OR_LIST,
     Job,
@@ -89,9 +90,9 @@ _SCHEMA: Map = {
         "split_group": TEXT_OR_LIST,
         "conditions": TEXT_OR_LIST,
         "units": NAMES,
-        "wav": "",
-        "channel": "",
-        "gain": "",
+        "wav": COLUMN,
+        "channel": COLUMN,
+        "gain": COLUMN,
         "source": TEXT_OR_LIST,
         "receiver": TEXT_OR_LIST,
     },
@@ -107,8 +108,8 @@ _SCHEMA: Map = {
         "units": NAMES,
         "source": TEXT_OR_LIST,
         "receiver": TEXT_OR_LIST,
-        "path": "",
-        "t_s": "",
+        "path": COLUMN,
+        "t_s": COLUMN,
     },
     "response_times": "",
 }

@@ -5,7 +5,16 @@ from __future__ import annotations
 from typing import Any
 
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
-from dwell.measured.maps import TABLE, Job, Map, column_list, filled, require, require_filled
+from dwell.measured.maps import (
+    COLUMN,
+    TABLE,
+    Job,
+    Map,
+    column_list,
+    filled,
+    require,
+    require_filled,
+)
 from dwell.measured.places import Place
 from dwell.measured.samples import Episode, Field, SampleReader, Samples, single
 from dwell.measured.tables import MeasuredTable
@@ -52,7 +61,7 @@ _SCHEMA: Map = {
         "friction_n_m": 1.0,
     },
     "noise_sd": {"position": 1.0},
-    "table": {**TABLE, "radians_per_unit": 1.0, "position": "", "target": ""},
+    "table": {**TABLE, "radians_per_unit": 1.0, "position": COLUMN, "target": COLUMN},
     "commands": {
         "file": (str, list),
         "part": "",
@@ -61,8 +70,8 @@ _SCHEMA: Map = {
         "seconds_per_unit": 1.0,
         "radians_per_unit": 1.0,
         "episode": (str, list),
-        "t_s": "",
-        "target": "",
+        "t_s": COLUMN,
+        "target": COLUMN,
     },
 }
 _JOINT_VALUES = (

@@ -146,6 +146,50 @@ fn a_plan_file_opens_as_a_house_and_reads_only_below_its_folder() {
 }
 
 #[test]
+fn a_json_with_the_look_of_a_plan_is_told_which_formats_there_are() {
+    let folder = tempfile::tempdir().unwrap();
+    let opened = |name: &str, text: &str| {
+        let file = folder.path().join(name);
+        fs::write(&file, text).unwrap();
+        open(&file.to_string_lossy()).map(|(house, _)| house)
+    };
+    let building =
+        r#""building": {"storeys": [{"rooms": [{"outline": [[0,0],[4,0],[4,3],[0,3]]}]}]}"#;
+    for (text, found) in [
+        (
+            format!(r#"{{"format": "dwel-plan", {building}}}"#),
+            "\"dwel-plan\"",
+        ),
+        (format!("{{{building}}}"), "nothing"),
+        (
+            r#"{"house": "builtin:studio", "edits": []}"#.to_owned(),
+            "nothing",
+        ),
+        (
+            r#"{"format": "dwell-replay", "config": {}}"#.to_owned(),
+            "\"dwell-replay\"",
+        ),
+        (r#"{"format": 5}"#.to_owned(), "5"),
+    ] {
+        let told = opened("p.json", &text).unwrap_err().to_string();
+        assert!(
+            told.starts_with("p.json: format: expected \"dwell-plan\", the only one"),
+            "{told}"
+        );
+        assert!(told.ends_with(&format!(", found {found}")), "{told}");
+    }
+    // A house of SUNCG may hold such words, and a plan's name any letters.
+    let told = opened("q.json", r#"{"format": "x", "levels": 3}"#).unwrap_err();
+    assert!(told.to_string().contains("levels"), "{told}");
+    let plan = format!(r#"{{"format": "dwell-plan", {building}}}"#);
+    assert_eq!(
+        opened("\u{65e5}\u{672c}\u{5bb6}.json", &plan).unwrap().name,
+        "\u{65e5}\u{672c}\u{5bb6}"
+    );
+    assert_eq!(opened("home.Plan.JSON", &plan).unwrap().name, "home");
+}
+
+#[test]
 fn a_plan_is_the_same_after_json() {
     let plan: HousePlan = serde_json::from_value(json!({"house": "seed:3", "edits": [
         {"add": {"what": {"catalogue": {"kind": "mug"}}, "place": {"on": "table_1"}}},

@@ -3,16 +3,22 @@
 /// Letters of a name that are compared; longer ones are cut.
 const COMPARED: usize = 64;
 
-/// Of the `known` names those nearest to `name`, at most `count`, each once: those with it as one of their words (`floor_lamp` for
-/// `lamp`), then by the letters that differ, then by the alphabet.
+/// Of the `known` names those nearest to `name`, at most `count`, each once: those with all of its words (`floor_lamp_2` for `lamp`
+/// or `lamp_1`: numbers are no words), then by the letters that differ, then by the alphabet.
 pub fn nearest_names<'a>(
     name: &str,
     known: impl Iterator<Item = &'a str>,
     count: usize,
 ) -> Vec<&'a str> {
-    let has_word = |other: &str| other.split(['_', ' ']).any(|word| word == name);
+    let wanted: Vec<&str> = words(name).collect();
+    let has_words = |other: &str| {
+        !wanted.is_empty()
+            && wanted
+                .iter()
+                .all(|word| words(other).any(|own| own == *word))
+    };
     let mut ranked: Vec<(bool, usize, &str)> = known
-        .map(|other| (!has_word(other), distance(name, other), other))
+        .map(|other| (!has_words(other), distance(name, other), other))
         .collect();
     ranked.sort_unstable();
     ranked.dedup();
@@ -23,8 +29,14 @@ pub fn nearest_names<'a>(
         .collect()
 }
 
+/// The words of a name, without its numbers.
+fn words(name: &str) -> impl Iterator<Item = &str> {
+    name.split(['_', ' '])
+        .filter(|word| word.chars().any(|letter| !letter.is_ascii_digit()))
+}
+
 /// Returns whether at most `letters` letters differ between two names, upper case or not, and more than those are the same.
-pub(crate) fn is_within_edit_distance(name: &str, known: &str, letters: usize) -> bool {
+pub fn is_within_edit_distance(name: &str, known: &str, letters: usize) -> bool {
     known.chars().count() > 2 * letters && distance(name, known) <= letters
 }
 
@@ -59,6 +71,11 @@ mod tests {
         assert_eq!(
             nearest_names("table", kinds.into_iter(), 1),
             ["dining_table"]
+        );
+        let things = ["book_1", "rug_1", "single_bed_1", "bed_frame"];
+        assert_eq!(
+            nearest_names("bed_2", things.into_iter(), 2),
+            ["bed_frame", "single_bed_1"]
         );
         let near = nearest_names("tabel_1", known.into_iter(), 2);
         assert_eq!(near, ["table_1", "stable"]);
