@@ -109,6 +109,30 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     return found
 
 
+def is_whole(path: _Name) -> bool:
+    """Returns whether there is a regular file that is not empty and ends as its form does.
+
+    What was cut does not, as by a power cut: PNG ends with ``IEND``, NPZ with a directory, WAV
+    after as many bytes as it says.
+    """
+    try:
+        with open_file(path) as file:
+            size = file.seek(0, os.SEEK_END)
+            ending = os.path.splitext(path)[1]
+            if ending == ".png":
+                file.seek(max(0, size - 12))
+                return file.read() == b"\0\0\0\0IEND\xae\x42\x60\x82"
+            if ending == ".npz":
+                file.seek(max(0, size - 22))
+                return file.read(4) == b"PK\5\6"
+            if ending == ".wav":
+                file.seek(4)
+                return size == int.from_bytes(file.read(4), "little") + 8
+            return size > 0
+    except OSError:
+        return False
+
+
 def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Iterator[bytes]:
     """The lines of an open file, none of them longer than ``most_bytes``.
 
@@ -254,13 +278,16 @@ def atomic_folder(path: _Name) -> Iterator[Path]:
 
 @contextlib.contextmanager
 def errors_named(path: _Name) -> Iterator[None]:
-    """Gives errors about drafts the name that people know."""
+    """Gives errors about drafts, and those that name no file, the name that people know."""
     try:
         yield
+    except _native.DwellError:
+        # They say themselves of what they are.
+        raise
     except OSError as error:
         # What people know is the name that they gave.
         named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
-        is_ours = named is None or any(is_draft(name) for name in named.parts[-3:])
+        is_ours = named is None or any(map(is_draft, named.parts))
         if is_ours and error.errno is not None:
             rename_error(error, path)
         elif is_ours:
@@ -447,6 +474,20 @@ def open_exclusive(path: Path) -> IO[bytes]:
                 return file
         # Its process came to its end in this moment, and has taken it away.
         file.close()
+
+
+def append(file: IO[bytes], content: bytes, name: _Name) -> None:
+    """Writes to the end of an open file and on to the disk; nothing waits in a buffer.
+
+    Raises:
+        OSError: The system refuses; the error names the file.
+    """
+    with errors_named(name):
+        file.seek(0, os.SEEK_END)
+        left = memoryview(content)
+        while left:
+            left = left[os.write(file.fileno(), left) :]
+        os.fsync(file.fileno())
 
 
 def make_folder(folder: Path) -> None:
