@@ -306,6 +306,18 @@ def test_houses_that_had_no_room_are_made_by_the_next_run(tmp_path: Path, form: 
     assert not [path for path in out.rglob("*") if "partial" in path.name]
 
 
+def test_a_full_disk_that_names_no_file_is_told_with_the_output(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(args: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("dwell.cli.ir.run", full)
+    out = tmp_path / "x.wav"
+    assert cli.main(["ir", *IR, "--out", str(out)]) == 1
+    assert capsys.readouterr().err == f"dwell ir: {out}: No space left on device\n"
+
+
 def test_shards_that_begin_together_agree_on_their_folder(tmp_path: Path) -> None:
     from concurrent.futures import ThreadPoolExecutor
 

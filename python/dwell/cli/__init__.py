@@ -150,6 +150,7 @@ def _name_full_disk(error: BaseException, out: str | os.PathLike[str] | None) ->
     """Gives an error that there is no room, and names none, that of what was being written."""
     from dwell.files import rename_error
 
-    is_full = isinstance(error, OSError) and error.errno in (errno.ENOSPC, errno.EFBIG, _EDQUOT)
-    if is_full and error.filename is None and out is not None:
+    if not isinstance(error, OSError) or error.filename is not None or out is None:
+        return
+    if error.errno in (errno.ENOSPC, errno.EFBIG, _EDQUOT):
         rename_error(error, out)
