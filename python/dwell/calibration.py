@@ -18,11 +18,14 @@ from dwell.arguments import (
     sequence_items,
     text,
 )
-from dwell.files import make_folder
+from dwell.files import make_folder, read_json
 from dwell.measured.coverage import Coverage, coverage
 from dwell.measured.recorder import Recorder
 
 __all__ = ["Coverage", "Recorder", "calibrate", "coverage", "write_example"]
+
+#: The kind of bundles that are compared with other simulators.
+_COMPARED = "pose_trajectory"
 
 
 def calibrate(
@@ -50,6 +53,7 @@ def calibrate(
         page. A search that was ended early says ``"finished": False`` and names nothing.
 
     Raises:
+        ConfigError: ``peers`` are given and the bundle is of another kind.
         MeasuredDataError: The bundle or a table cannot be used; the message names file, line and
             field. Also where the bundle or a file of it is missing.
         OSError: The system refuses to read a table of ``peers``.
@@ -59,10 +63,32 @@ def calibrate(
     if progress is not None and not callable(progress):
         raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
     named = None if house is None else text("house", house)
+    bundle = file_path("measured", measured)
+    if names:
+        _refuse_peers(bundle, names)
     budget = None if budget_s is None else finite_number("budget_s", budget_s)
-    told = _native.calibrate(file_path("measured", measured), named, progress, names, budget)
+    told = _native.calibrate(bundle, named, progress, names, budget)
     report: dict[str, Any] = json.loads(told)
     return report
+
+
+def _refuse_peers(bundle: str, peers: Sequence[str]) -> None:
+    """Refuses tables of other simulators where nothing is compared with them.
+
+    Raises:
+        ConfigError: The bundle holds no pose trajectories.
+    """
+    try:
+        manifest = read_json(Path(bundle, "manifest.json"))
+    except (OSError, ValueError):
+        # The reader of bundles says what is wrong with it.
+        return
+    kind = manifest.get("kind") if isinstance(manifest, dict) else None
+    if isinstance(kind, str) and kind != _COMPARED:
+        raise ConfigError(
+            f"peers is {quoted([*peers])}; {bundle} is of the kind {kind!r}, of which nothing is "
+            f"compared with other simulators: expected none, or a bundle of the kind {_COMPARED!r}"
+        )
 
 
 def write_example(folder: str | os.PathLike[str], seed: int = 0) -> str:

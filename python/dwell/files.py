@@ -109,6 +109,30 @@ def read(path: _Name, most_bytes: int = MAX_TEXT_BYTES) -> bytes:
     return found
 
 
+def is_whole(path: _Name) -> bool:
+    """Returns whether there is a regular file that is not empty and ends as its form does.
+
+    What was cut does not, as by a power cut: PNG ends with ``IEND``, NPZ with a directory, WAV
+    after as many bytes as it says.
+    """
+    try:
+        with open_file(path) as file:
+            size = file.seek(0, os.SEEK_END)
+            ending = os.path.splitext(path)[1]
+            if ending == ".png":
+                file.seek(max(0, size - 12))
+                return file.read() == b"\0\0\0\0IEND\xae\x42\x60\x82"
+            if ending == ".npz":
+                file.seek(max(0, size - 22))
+                return file.read(4) == b"PK\5\6"
+            if ending == ".wav":
+                file.seek(4)
+                return size == int.from_bytes(file.read(4), "little") + 8
+            return size > 0
+    except OSError:
+        return False
+
+
 def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Iterator[bytes]:
     """The lines of an open file, none of them longer than ``most_bytes``.
 
@@ -203,7 +227,7 @@ def parse_json(
 def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
     """A temporary file that takes the place of ``path`` when all went well.
 
-    A link is followed where it leads to a regular file, which is replaced.
+    A link is refused: what it leads to was named by nobody, and would be lost.
 
     Args:
         path: What shall be there; folders above it are made.
@@ -213,12 +237,13 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
         OSError: The system refuses, or something stands there that is no regular file.
         FileExistsError: It shall be new and is not.
     """
-    path = Path(path)
+    place = Path(path)
     if new:
-        _refuse_existing(path)
-    place = path if new else _place(path)
+        _refuse_existing(place)
+    else:
+        _refuse_irreplaceable(place)
     make_folder(place.parent)
-    with _errors_named(path), _draft(place) as folder:
+    with errors_named(path), _draft(place) as folder:
         draft = folder / "file"
         draft.touch(0o600)
         yield draft
@@ -243,7 +268,7 @@ def atomic_folder(path: _Name) -> Iterator[Path]:
     place = Path(path)
     _refuse_existing(place)
     make_folder(place.parent)
-    with _errors_named(place), _draft(place) as folder:
+    with errors_named(place), _draft(place) as folder:
         draft = folder / "folder"
         draft.mkdir()
         yield draft
@@ -252,14 +277,17 @@ def atomic_folder(path: _Name) -> Iterator[Path]:
 
 
 @contextlib.contextmanager
-def _errors_named(path: _Name) -> Iterator[None]:
-    """Gives errors about drafts the name that people know."""
+def errors_named(path: _Name) -> Iterator[None]:
+    """Gives errors about drafts, and those that name no file, the name that people know."""
     try:
         yield
+    except _native.DwellError:
+        # They say themselves of what they are.
+        raise
     except OSError as error:
         # What people know is the name that they gave.
         named = Path(error.filename) if isinstance(error.filename, str | os.PathLike) else None
-        is_ours = named is None or any(is_draft(name) for name in named.parts[-3:])
+        is_ours = named is None or any(map(is_draft, named.parts))
         if is_ours and error.errno is not None:
             rename_error(error, path)
         elif is_ours:
@@ -298,7 +326,8 @@ def check_writable(path: _Name) -> None:
     Raises:
         OSError: No file can stand there.
     """
-    place = _place(Path(path))
+    place = Path(path)
+    _refuse_irreplaceable(place)
     for above in place.parents:
         if os.path.lexists(above):
             if not above.is_dir():
@@ -429,9 +458,7 @@ def open_exclusive(path: Path) -> IO[bytes]:
     """
     flags = os.O_RDWR | os.O_CREAT | getattr(os, "O_NOFOLLOW", 0) | getattr(os, "O_CLOEXEC", 0)
     while True:
-        if path.is_symlink():
-            # Nobody named it, so nobody knows what would be written through it.
-            raise OSError(errno.ELOOP, "is a link; remove it, or give another --out", str(path))
+        refuse_link(path)
         if os.path.lexists(path):
             # Refuses what is no regular file.
             open_file(path).close()
@@ -449,6 +476,20 @@ def open_exclusive(path: Path) -> IO[bytes]:
         file.close()
 
 
+def append(file: IO[bytes], content: bytes, name: _Name) -> None:
+    """Writes to the end of an open file and on to the disk; nothing waits in a buffer.
+
+    Raises:
+        OSError: The system refuses; the error names the file.
+    """
+    with errors_named(name):
+        file.seek(0, os.SEEK_END)
+        left = memoryview(content)
+        while left:
+            left = left[os.write(file.fileno(), left) :]
+        os.fsync(file.fileno())
+
+
 def make_folder(folder: Path) -> None:
     """Makes a folder and those above it, where they are not there.
 
@@ -461,27 +502,27 @@ def make_folder(folder: Path) -> None:
         raise NotADirectoryError(errno.ENOTDIR, "is no folder", os.fspath(folder)) from None
 
 
-def _place(path: Path) -> Path:
-    """The path of a file that is written to ``path``: elsewhere when that is a link.
+def refuse_link(path: _Name) -> None:
+    """Refuses to write where a link stands, wherever it leads.
 
     Raises:
-        OSError: Something stands there that is no regular file, or a link that leads nowhere.
+        OSError: One does.
     """
-    try:
-        facts = path.lstat()
-    except (FileNotFoundError, NotADirectoryError):
-        # Of what stands above it, whoever makes the folders says more.
-        return path
-    if not stat.S_ISLNK(facts.st_mode):
-        _refuse_irregular(facts, os.fspath(path))
-        return path
-    real = Path(os.path.realpath(path))
-    try:
-        _refuse_irregular(real.stat(), os.fspath(path))
-    except FileNotFoundError:
-        told = "is a link that leads to no file"
-        raise FileNotFoundError(errno.ENOENT, told, os.fspath(path)) from None
-    return real
+    if os.path.islink(path):
+        what = "is a link, and nothing is written through links; remove it, or name another place"
+        raise OSError(errno.ELOOP, what, os.fspath(path))
+
+
+def _refuse_irreplaceable(path: Path) -> None:
+    """Refuses to replace what is no regular file, as a link is none.
+
+    Raises:
+        OSError: Such a thing stands there.
+    """
+    refuse_link(path)
+    # Of what stands above it, whoever makes the folders says more.
+    with contextlib.suppress(FileNotFoundError, NotADirectoryError):
+        _refuse_irregular(path.lstat(), os.fspath(path))
 
 
 def _refuse_existing(path: Path) -> None:

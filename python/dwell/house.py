@@ -9,7 +9,7 @@ from collections.abc import Callable
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
-from dwell import ConfigError, HouseNotFoundError, UsageError, _native, arguments
+from dwell import ConfigError, HouseError, HouseNotFoundError, UsageError, _native, arguments
 from dwell.arguments import (
     boolean,
     file_name,
@@ -19,6 +19,7 @@ from dwell.arguments import (
     point,
     text,
 )
+from dwell.files import refuse_link
 from dwell.grounded_text import Length, Style, Text, texts
 from dwell.house_list import HouseList
 from dwell.house_strings import stands_for_several
@@ -350,8 +351,14 @@ class House:
 
         Returns:
             What the form cannot hold, in sentences.
+
+        Raises:
+            HouseError: Something else stands there, as a link; nothing is written through it.
+            OSError: The system refuses.
         """
-        return self._native.write(arguments.file_path("path", path), text("form", form))
+        out = arguments.file_path("path", path)
+        _refuse_links(Path(out))
+        return self._native.write(out, text("form", form))
 
     def write_into(
         self, root: str | os.PathLike[str], name: str, form: Form
@@ -366,9 +373,17 @@ class House:
 
         Returns:
             Where the house is, as :meth:`open` takes it, and what the form cannot hold.
+
+        Raises:
+            HouseError: Something else stands there, as a link; nothing is written through it.
+            OSError: The system refuses.
         """
         root, form_name = arguments.file_path("root", root), text("form", form)
-        return self._native.write_into(root, file_name("name", name), form_name)
+        name = file_name("name", name)
+        folders = [Path(root, folder) for folder in ("house", "room", "object", "texture")]
+        own = [folders[0] / f"{name}{ending}" for ending in ("", ".dwell", ".glb")]
+        _refuse_links(*folders, *own, folders[1] / name)
+        return self._native.write_into(root, name, form_name)
 
     @staticmethod
     def finish_folder(root: str | os.PathLike[str], form: Form) -> None:
@@ -422,3 +437,16 @@ def _shoebox(
     scattering: float | None,
 ) -> House:
     return House.shoebox(size_m, substance=substance, absorption=absorption, scattering=scattering)
+
+
+def _refuse_links(*places: Path) -> None:
+    """Refuses to write where one of these is a link.
+
+    Raises:
+        HouseError: One is.
+    """
+    try:
+        for place in places:
+            refuse_link(place)
+    except OSError as error:
+        raise HouseError(f"{error.filename}: {error.strerror}") from None

@@ -9,6 +9,7 @@ import inspect
 import os
 import traceback
 import types
+import weakref
 from collections.abc import Callable, Iterator, Mapping
 from typing import Any, TypeVar
 
@@ -17,6 +18,8 @@ from dwell.arguments import mapping, quoted, refuse_unknown, text
 from dwell.messages import with_short_words
 
 _Part = TypeVar("_Part", bound="PluginPart")
+#: Who plays with a part, by the part's identity; they hold it, so that it is nobody else's.
+_USERS: weakref.WeakValueDictionary[int, object] = weakref.WeakValueDictionary()
 
 
 @contextlib.contextmanager
@@ -115,10 +118,33 @@ def factory(
             raise ConfigError(
                 f"{at}: {quoted(make)} made {quoted(part)}; expected a dwell.{kind.__name__}"
             )
-        part.state = {}
+        # Of one that an environment plays with, the state is that environment's.
+        if id(part) not in _USERS:
+            part.state = {}
         return part
 
     return made
+
+
+def claim_part(part: PluginPart, user: object, is_same: Callable[[Any], bool]) -> None:
+    """Says who plays with a part as long as they live: states would mix where it were two.
+
+    Args:
+        part: The part.
+        user: Who plays with it.
+        is_same: Whether another user, who claimed it before, is the same environment.
+
+    Raises:
+        ConfigError: Another environment plays with it.
+    """
+    other = _USERS.get(id(part))
+    if other is not None and not is_same(other):
+        name = type(part).__name__
+        raise ConfigError(
+            f"found the same {name} in two environments; every one has its own: expected the "
+            f"class, or a function that makes a new {name} each time it is called"
+        )
+    _USERS[id(part)] = user
 
 
 def _refuse_unknown_settings(

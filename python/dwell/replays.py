@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Callable, Iterator, Mapping, Sequence
+from collections.abc import Callable, Container, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -373,7 +373,8 @@ class Replay:
             )
         config = _without_pictures(self._settings())
         if renderer is not None:
-            config["world"] = {**config.get("world", {}), "renderer": renderer}
+            world = mapping("config: world", config.get("world", {}))
+            config["world"] = {**world, "renderer": renderer}
         opened = House.open(self.house) if house is None else instance_of("house", house, House)
         try:
             return NativeBatch([opened], to_json(config), None, custom=custom)
@@ -488,16 +489,21 @@ def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
     """The settings without sensors of pictures: no bit of a world depends on them.
 
     What remains is heard or felt. Who plays an episode again looks at the world itself.
+
+    Raises:
+        ConfigError: The kind of a sensor is no text.
     """
     pictures = {row["name"] for row in _native.sensors() if row["picture_style"] is not None}
 
-    def kept(row: object) -> object:
+    def kept(row: object, at: str) -> object:
         if not isinstance(row, dict) or not isinstance(row.get("sensors"), list):
             return row
-        return row | {"sensors": [own for own in row["sensors"] if not shown(own)]}
+        sensors = enumerate(row["sensors"])
+        return row | {"sensors": [own for k, own in sensors if not shown(own, f"{at}sensors[{k}]")]}
 
-    def shown(row: object) -> bool:
-        return isinstance(row, dict) and row.get("kind") in pictures
+    def shown(row: object, at: str) -> bool:
+        # The engine says which sensor, and not that it is the kind.
+        return isinstance(row, dict) and text(f"{at}.kind", row.get("kind")) in pictures
 
     general = config.get("task", "InstructionFollowing")
     usual = {row["name"]: [{"kind": kind} for kind in row["sensors"]] for row in _native.tasks()}
@@ -508,16 +514,23 @@ def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
             {**row, "sensors": usual[row.get("task", general)]}
             if isinstance(row, dict)
             and row.get("sensors") is None
-            and row.get("task", general) in usual
+            and _is_name_in(usual, row.get("task", general))
             else row
             for row in agents
         ]
-    elif config.get("sensors") is None and general in usual:
+    elif config.get("sensors") is None and _is_name_in(usual, general):
         config = config | {"sensors": usual[general]}
     if isinstance(agents, list):
-        config = config | {"agents": [kept(row) for row in agents]}
-    result = kept(config)
+        config = config | {
+            "agents": [kept(row, f"config: agents[{k}].") for k, row in enumerate(agents)]
+        }
+    result = kept(config, "config: ")
     return result if isinstance(result, dict) else config
+
+
+def _is_name_in(known: Container[str], found: object) -> bool:
+    """Returns whether a value of a file is one of these names; what is no name the engine tells."""
+    return isinstance(found, str) and found in known
 
 
 def _agent_differences(

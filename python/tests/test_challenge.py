@@ -350,6 +350,26 @@ def test_rows_that_are_no_verdicts_are_told_with_file_line_and_field(
         list(read_answers(path))
 
 
+def test_a_full_disk_is_told_with_the_file_of_verdicts(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    settings = ChallengeSettings(cases=2, worlds=("flights",))
+    assert len([*make(tmp_path / "set", settings)]) == 2
+    verdicts = tmp_path / "v.jsonl"
+
+    def nothing(bundle: Path) -> dict[str, Any]:
+        del bundle
+        return {"kind": "nothing", "sets": [], "parameters": {}}
+
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (150, before[1]))
+    try:
+        with pytest.raises(OSError, match=r"v\.jsonl"):
+            list(run(tmp_path / "set", verdicts, nothing))
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert [is_new for _, is_new in run(tmp_path / "set", verdicts, nothing)] == [False, True]
+
+
 def test_a_method_that_says_nothing_is_told(tmp_path: Path) -> None:
     list(make(tmp_path / "cases", ChallengeSettings(cases=1, seed=2)))
     verdicts = tmp_path / "verdicts.jsonl"

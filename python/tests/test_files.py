@@ -6,6 +6,7 @@ import contextlib
 import errno
 import json
 import os
+import shutil
 import signal
 import socket
 import subprocess
@@ -139,23 +140,58 @@ def test_json_at_the_limit_is_read(tmp_path: Path) -> None:
     assert value == '"]\N{GRINNING FACE}'
 
 
-def test_links_are_followed_to_files_and_stay(tmp_path: Path) -> None:
+def test_nothing_is_written_through_links(tmp_path: Path) -> None:
     path, link, nowhere = (tmp_path / name for name in ("a", "link", "nowhere"))
     path.write_text("old")
     link.symlink_to(path)
     nowhere.symlink_to(tmp_path / "missing")
-    with files.atomic_write(link) as draft:
-        draft.write_text("new")
-    assert link.is_symlink()
-    assert path.read_text() == "new"
-    with pytest.raises(FileNotFoundError, match="leads to no file"), files.atomic_write(nowhere):
-        pass
+    for place in (link, nowhere):
+        with pytest.raises(OSError, match="is a link") as refused, files.atomic_write(place):
+            pass
+        assert refused.value.filename == str(place)
+        with pytest.raises(OSError, match="is a link"):
+            files.check_writable(place)
     with (
         pytest.raises(FileExistsError, match="is there already"),
         files.atomic_write(link, new=True),
     ):
         pass
+    assert path.read_text() == "old"
     assert sorted(entry.name for entry in tmp_path.iterdir()) == ["a", "link", "nowhere"]
+
+
+@pytest.mark.parametrize(
+    ("command", "name"),
+    [
+        ("ir builtin:studio --grid 2.5 --rays 50 --sources 1", "builtin-studio.sofa"),
+        ("generate --count 1 --spec home=studio", "house/seed_0.dwell"),
+    ],
+)
+def test_a_link_in_the_folder_of_a_job_is_refused_and_what_it_leads_to_stays(
+    command: str, name: str, tmp_path: Path, capsys: pytest.CaptureFixture[str]
+) -> None:
+    if command.startswith("ir"):
+        pytest.importorskip("h5py")
+    out, mine = tmp_path / "out", tmp_path / "mine.dwell"
+    started = cli.main([*command.split(), "--out", str(out)])
+    assert started == 0, capsys.readouterr().err
+    if (out / name).is_dir():
+        shutil.rmtree(out / name)
+        dwell.House.open("builtin:studio").write(mine, "dwell")
+    else:
+        (out / name).unlink()
+        mine.write_text("dear")
+    before = _contents(mine)
+    (out / name).symlink_to(mine)
+    assert cli.main([*command.split(), "--out", str(out)]) == 1
+    assert f"{out / name}: is a link" in capsys.readouterr().err
+    assert (out / name).is_symlink()
+    assert _contents(mine) == before
+
+
+def _contents(place: Path) -> dict[str, bytes]:
+    found = place.rglob("*") if place.is_dir() else (place,)
+    return {file.name: file.read_bytes() for file in found if file.is_file()}
 
 
 #: What writes to a path, which ends as here.
@@ -268,6 +304,18 @@ def test_houses_that_had_no_room_are_made_by_the_next_run(tmp_path: Path, form: 
     rows = [json.loads(line) for line in (out / "manifest.jsonl").read_text("utf-8").splitlines()]
     assert all(dwell.House.open(out / row["path"]).info()["objects"] for row in rows)
     assert not [path for path in out.rglob("*") if "partial" in path.name]
+
+
+def test_a_full_disk_that_names_no_file_is_told_with_the_output(
+    tmp_path: Path, capsys: pytest.CaptureFixture[str], monkeypatch: pytest.MonkeyPatch
+) -> None:
+    def full(args: object) -> int:
+        raise OSError(errno.ENOSPC, os.strerror(errno.ENOSPC))
+
+    monkeypatch.setattr("dwell.cli.ir.run", full)
+    out = tmp_path / "x.wav"
+    assert cli.main(["ir", *IR, "--out", str(out)]) == 1
+    assert capsys.readouterr().err == f"dwell ir: {out}: No space left on device\n"
 
 
 def test_shards_that_begin_together_agree_on_their_folder(tmp_path: Path) -> None:

@@ -12,6 +12,7 @@ import pytest
 from test_measured_kinds import JOINT
 from test_slips import DRIVE, FLIGHT, POSES, Rows, brought, put, refused, with_table
 
+import dwell
 from dwell.calibration import calibrate
 from dwell.measured.importing import import_files
 
@@ -182,3 +183,19 @@ def test_a_gravity_that_was_told_is_the_simulation_s(tmp_path: Path, told: float
 def test_a_wrong_gravity_that_was_told_is_found(tmp_path: Path) -> None:
     report = thrown(tmp_path, 9.80665, 1.62)
     assert "gravity" in json.dumps(report["verdict"]), report["verdict"]
+
+
+@pytest.mark.parametrize("radius_m", [1e308, 1e103, 1e-300, 100.0])
+def test_a_radius_that_no_body_has_is_told_with_the_range(tmp_path: Path, radius_m: float) -> None:
+    body = {"name": "ball", "mass_kg": 0.0027, "radius_m": radius_m}
+    mapping = {**{key: FLIGHT[key] for key in FLIGHT if key != "bodies"}, "body": body}
+    with pytest.raises(ValueError, match=r"body\.radius_m is .*allowed is 0\.001 to 10 m"):
+        brought(tmp_path, mapping)
+
+
+def test_scores_of_other_simulators_are_of_pose_trajectories_alone(tmp_path: Path) -> None:
+    brought(tmp_path, FLIGHT)
+    [bundle] = tmp_path.glob("*.measured")
+    (tmp_path / "peer.csv").write_bytes(b"garbage \0 no table")
+    with pytest.raises(dwell.ConfigError, match="is of the kind 'trajectory', of which"):
+        calibrate(bundle, peers=[tmp_path / "peer.csv"], budget_s=0.1)

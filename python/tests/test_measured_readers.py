@@ -6,6 +6,7 @@ import contextlib
 import csv
 import json
 import math
+import shutil
 from pathlib import Path
 from typing import Any
 
@@ -159,6 +160,31 @@ def test_demonstrations_of_hdf5_are_read_in_the_order_of_their_numbers(tmp_path:
     assert table.columns == ["{group}", "{index}", "actions", "obs/joint[0]", "obs/joint[1]"]
     with pytest.raises(ValueError, match="no group 'date'; it has"):
         open_table(tmp_path / "demos.hdf5", "date")
+
+
+def test_arrays_of_hdf5_that_differ_in_length_are_not_cut(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "demos.hdf5"
+    demos(path)
+    with h5py.File(path, "a") as file:
+        for group in file["data"].values():
+            # Of no column of the map: a camera's matrix, a faster sensor.
+            group["intrinsics"], group["force"] = np.eye(3), np.zeros((3 * LENGTH, 2))
+    imported(tmp_path, HDF5, "demos.hdf5")
+    # Where no column is chosen yet: those of most arrays.
+    assert len(list(open_table(path, "data/demo_2").rows)) == LENGTH
+    shutil.rmtree(tmp_path / "o.measured")
+    for length in (LENGTH - 1, LENGTH + 5, 1):
+        with h5py.File(path, "a") as file:
+            group = file["data/demo_2"]
+            del group["actions"]
+            group["actions"] = np.zeros(length)
+        told = (
+            rf"demos\.hdf5: group 'demo_2': column 'actions' has {length} rows and column "
+            rf"'obs/joint\[1\]' has {LENGTH}; columns of a table"
+        )
+        with pytest.raises(ValueError, match=told):
+            imported(tmp_path, HDF5, "demos.hdf5")
 
 
 def test_damaged_hdf5_is_refused_by_a_sentence_with_its_name(tmp_path: Path) -> None:

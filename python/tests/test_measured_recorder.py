@@ -112,6 +112,14 @@ def test_log_and_map_stand_beside_the_bundle_and_import_as_it_did(tmp_path: Path
     assert "morning" in again
 
 
+@pytest.mark.parametrize("told", ["x", None, float("nan"), [1.0]])
+def test_a_clock_that_tells_no_number_is_refused(told: object, tmp_path: Path) -> None:
+    clock: Any = lambda: told  # noqa: E731
+    recorder = Recorder(Arm(), tmp_path / "a.measured", MAP, clock=clock)
+    with pytest.raises(dwell.ConfigError, match="what clock returned, s, is"):
+        recorder.reset(seed=1)
+
+
 def test_a_clock_tells_the_times_where_no_step_is_given(tmp_path: Path) -> None:
     now = iter(np.cumsum(np.full(1000, 0.03)) + 1e9)
     recorder = Recorder(Arm(), tmp_path / "a.measured", MAP, clock=lambda: float(next(now)))

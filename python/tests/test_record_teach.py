@@ -27,6 +27,7 @@ from dwell.teach.places import free_layout
 from dwell.teach.pointing import first_hit, turned_aim
 from dwell.teach.scene import TABLE, stage
 from dwell.teach.session import Session, open_session
+from dwell.teach.table_mesh import write_table
 
 SMALL = TeachSettings(users=1, clips=3, seed=5, fps=4, width=64, pointing_noise_deg=0.0)
 Array = NDArray[np.float64]
@@ -280,11 +281,16 @@ def test_what_is_missing_in_a_recording_is_told(folder: Path, tmp_path: Path) ->
     assert contents(copy) == whole
     clip = copy / "user_01" / "show_01"
     for lost in ("hd/rgb/000001.png", "kinect_top/depth/000000.png", "audio.wav"):
-        (clip / lost).unlink()
-        with pytest.raises(
-            ValueError, match=rf"show_01/{lost} is missing or empty; remove .*show_01,"
-        ):
-            record(copy, SMALL)
+        kept = (clip / lost).read_bytes()
+        for left in (kept[: len(kept) // 2], kept[:-1], b"", None):
+            (clip / lost).unlink()
+            if left is not None:
+                (clip / lost).write_bytes(left)
+            with pytest.raises(
+                ValueError, match=rf"show_01/{lost} is missing or cut; remove .*show_01,"
+            ):
+                record(copy, SMALL)
+        (clip / lost).unlink(missing_ok=True)
         shutil.copy(folder / "user_01" / "show_01" / lost, clip / lost)
     (clip / "label.json").write_text("{")
     with pytest.raises(ValueError, match=r"label\.json: no JSON.*; remove .*show_01, and the clip"):
@@ -302,6 +308,18 @@ def test_a_full_disk_is_told_with_the_clip(tmp_path: Path, monkeypatch: pytest.M
     with pytest.raises(OSError, match=r"No space left on device: .*user_01/\w+_01"):
         record(tmp_path / "out", SMALL)
     assert [path.name for path in (tmp_path / "out" / "user_01").iterdir()] == ["user.json"]
+
+
+def test_a_full_temporary_folder_is_told_with_the_file(tmp_path: Path) -> None:
+    resource = pytest.importorskip("resource")
+    before = resource.getrlimit(resource.RLIMIT_FSIZE)
+    resource.setrlimit(resource.RLIMIT_FSIZE, (100, before[1]))
+    try:
+        with pytest.raises(OSError, match=r"table\.obj") as refused:
+            write_table(tmp_path / "table.obj")
+    finally:
+        resource.setrlimit(resource.RLIMIT_FSIZE, before)
+    assert refused.value.errno == errno.EFBIG
 
 
 def test_a_folder_that_another_process_begins_in_this_moment_is_not_something_else(

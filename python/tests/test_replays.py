@@ -341,6 +341,9 @@ def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
             {"world": {"sound_rate_hz": -1}},
             "config: world.sound_rate_hz: found integer `-1`",
         ),
+        ("config", {"sensors": [{"kind": [], "settings": {}}]}, "config: sensors[0].kind is []"),
+        ("config", {"task": {}}, "config: task"),
+        ("config", {"agents": [{"task": []}]}, "config: agents[0].task"),
         ("parts", ["Shouting"], "Shouting"),
     ]
     for field, value, said in faults:
@@ -349,6 +352,7 @@ def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
         wrong.write_text(json.dumps(row), "utf-8")
         with pytest.raises(dwell.DwellError) as refused:
             next(dwell.Replay.read(wrong).play())
+        assert dwell.Replay.read(wrong).differences()
         assert str(refused.value).startswith(f"{wrong}: ")
         assert said in str(refused.value)
 

@@ -12,7 +12,7 @@ from dwell import ConfigError
 from dwell.arguments import quoted
 from dwell.challenge.rows import check_verdict, read_verdicts
 from dwell.challenge.writing import bundle_of
-from dwell.files import make_folder, open_exclusive
+from dwell.files import append, make_folder, open_exclusive
 
 __all__ = ["calibrated_verdict", "run"]
 
@@ -72,6 +72,7 @@ def run(
         MeasuredDataError: A bundle cannot be used.
         ValueError: A verdict, of the file or of the method, lacks a field or has a wrong one, those
             of the file are another method's, or another process writes it.
+        OSError: The system refuses; the error names the file.
     """
     which, shards = shard
     cases = sorted(path.name.removesuffix(".measured") for path in folder.glob("*.measured"))
@@ -90,9 +91,7 @@ def run(
                 if is_new:
                     row = {"case": one, **method(bundle_of(folder, one)), "method": called}
                     check_verdict(row, f"the verdict on {one}")
-                    file.write((json.dumps(row, allow_nan=False) + "\n").encode())
-                    file.flush()
-                    os.fsync(file.fileno())
+                    append(file, (json.dumps(row, allow_nan=False) + "\n").encode(), verdicts)
                 yield one, is_new
         finally:
             if file.seek(0, os.SEEK_END) == 0:

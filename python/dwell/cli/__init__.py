@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import argparse
 import contextlib
+import errno
 import importlib
 import os
 import sys
@@ -34,6 +35,9 @@ COMMANDS = {
     "challenge": "cases with a hidden cause for methods of calibration, and their scores",
     "bench": "throughput of a stage",
 }
+
+#: What a system says where a user's share of the disk is full; not all have such shares.
+_EDQUOT = getattr(errno, "EDQUOT", errno.ENOSPC)
 
 
 class _Parser(argparse.ArgumentParser):
@@ -127,6 +131,7 @@ def _run(arguments: Sequence[str] | None) -> int:
     except BrokenPipeError:
         return 1
     except (DwellError, OSError, ValueError, ModuleNotFoundError, MemoryError) as error:
+        _name_full_disk(error, getattr(args, "out", None))
         print(f"dwell {args.command}: {sentence(error)}", file=sys.stderr)
         return 1
     except Exception as error:
@@ -139,3 +144,13 @@ def _run(arguments: Sequence[str] | None) -> int:
             file=sys.stderr,
         )
         return 1
+
+
+def _name_full_disk(error: BaseException, out: str | os.PathLike[str] | None) -> None:
+    """Gives an error that there is no room, and names none, that of what was being written."""
+    from dwell.files import rename_error
+
+    if not isinstance(error, OSError) or error.filename is not None or out is None:
+        return
+    if error.errno in (errno.ENOSPC, errno.EFBIG, _EDQUOT):
+        rename_error(error, out)

@@ -18,7 +18,16 @@ from numpy.typing import NDArray
 
 from dwell.cli.common import ProgressBar, number, print_json
 from dwell.cli.job_journal import claim, is_of_files, refuse_other
-from dwell.files import atomic_write, open_exclusive, open_file, read, read_json, save_array
+from dwell.files import (
+    atomic_write,
+    check_writable,
+    open_exclusive,
+    open_file,
+    read,
+    read_json,
+    refuse_link,
+    save_array,
+)
 from dwell.listening import Receiver
 
 #: Format and the suffix of its files.
@@ -148,6 +157,8 @@ def _house(
         sources = random_sources(scene.house, job["sources"], args.source_height, args.seed)
     fingerprint = str(scene.house.info()["fingerprint"])
     parts = out.with_name(f".{out.name}.parts")
+    check_writable(out)
+    refuse_link(parts)
     # What cannot be was refused by now.
     claim(args.out, dataset)
     with _alone(out):

@@ -5,6 +5,7 @@ from __future__ import annotations
 import argparse
 import sys
 import time
+from pathlib import Path
 from typing import Any
 
 from dwell.cli.common import (
@@ -140,6 +141,8 @@ def _datasheet(args: argparse.Namespace) -> int:
     from dwell.files import atomic_write
     from dwell.views.datasheet import datasheet
 
+    if args.out is not None:
+        _refuse_part_of(args.folder, args.out)
     text = datasheet(args.folder)
     if args.out is None:
         sys.stdout.write(text)
@@ -147,3 +150,14 @@ def _datasheet(args: argparse.Namespace) -> int:
         with atomic_write(args.out) as draft:
             draft.write_text(text, "utf-8")
     return 0
+
+
+def _refuse_part_of(folder: Path, out: Path) -> None:
+    """Refuses to write over what a data set of views consists of.
+
+    Raises:
+        ValueError: The file is, or would be, one of the data set.
+    """
+    place, own = out.resolve(), folder.resolve()
+    if place == own / "dataset.json" or place.is_relative_to(own / "views"):
+        raise ValueError(f"--out is {out}, where {folder} has its own files; name another file")

@@ -19,6 +19,7 @@ from dwell.demo import (
     second_agent,
     throughput,
 )
+from dwell.files import refuse_link
 from dwell.house import House
 
 Progress = Callable[[float, str], None]
@@ -39,9 +40,9 @@ def run(house: str, out: Path, progress: Progress) -> dict[str, Any]:
 
     Raises:
         FileExistsError: ``out`` holds something that no demo wrote.
+        OSError: ``out`` is a link, or the system refuses.
     """
-    # A link stays; the folder that it leads to is the one that is replaced.
-    out = out.resolve() if out.is_symlink() else out
+    refuse_link(out)
     if out.exists() and any(out.iterdir()) and not (out / "index.html").exists():
         raise FileExistsError(f"{out}: holds files that no demo wrote; choose another folder")
     out.parent.mkdir(parents=True, exist_ok=True)

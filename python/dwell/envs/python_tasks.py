@@ -30,7 +30,7 @@ from dwell.arguments import (
 from dwell.envs.info_keys import EPISODE_KEYS
 from dwell.episodes import task_of
 from dwell.house import House
-from dwell.plugin_parts import factory
+from dwell.plugin_parts import claim_part, factory
 from dwell.rewards import Reward
 from dwell.sensors import Sensor
 from dwell.tasks import StepResult, Task, TaskGoal
@@ -151,9 +151,14 @@ class PythonEpisode:
     """The Python parts of one environment, and the world that they look at."""
 
     def __init__(self, batch: _native.Batch, env: int, house: House, custom: PythonTask) -> None:
-        """Makes the parts of environment ``env``."""
+        """Makes the parts of environment ``env``.
+
+        Raises:
+            ConfigError: One is a part of another environment.
+        """
         self._batch = batch
         self._env = env
+        self._custom = custom
         self._world = World.of_env(house, _native.World.of_env(batch, env))
         self._task = None if custom.task is None else custom.task()
         self._reward = None if custom.reward is None else custom.reward()
@@ -163,9 +168,16 @@ class PythonEpisode:
         self._seen: dict[str, Any] | None = None
         #: Whether that came with a snapshot and nobody has been given it.
         self._is_restored = False
-        if agent := batch.agents()[0]:
-            for part in self._parts().values():
-                part.agent = agent
+        agent = batch.agents()[0]
+        for part in (*self.sensors, self._task, self._reward):
+            if part is not None:
+                claim_part(part, self, self._is_same_env)
+                if agent:
+                    part.agent = agent
+
+    def _is_same_env(self, other: PythonEpisode) -> bool:
+        """Whether another is of the same environment, in another house: one plays at a time."""
+        return other._custom is self._custom and other._env == self._env
 
     def move(self, house: House) -> None:
         """Moves the environment into another house; parts may have kept the world."""

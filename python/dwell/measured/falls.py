@@ -28,6 +28,8 @@ _MOST_PRESSED = 2.8
 #: Share of the air's weight in that of the body above which buoyancy and the air that is carried
 #: along rule: a balloon.
 _LIGHT = 0.3
+#: Radius of no body that flies, m; of larger ones not even the volume is a float.
+_HUGE_M = 1e6
 #: Shares of all samples: below the first nothing falls as it is told; from the second on a cause
 #: explains the motion, if it explains more than what is told by the third.
 _FALLING, _TELLING, _BETTER = 0.25, 0.6, 0.3
@@ -204,10 +206,10 @@ def _motions(flights: Iterable[Flight], told: Told) -> list[_Motion] | None:
     rows: list[list[tuple[Array, Array]]] = [[] for _ in _PARTS]
     air_kg_m3 = _air_density(told.environment)
     for flight in flights:
-        volume_m3 = 4.0 / 3.0 * math.pi * flight.radius_m**3
-        # What is no mass is refused with the bundle.
-        if not 0.0 < flight.mass_kg < math.inf or not flight.radius_m > 0.0:
+        # What is no mass or no radius is refused with the bundle.
+        if not 0.0 < flight.mass_kg < math.inf or not 0.0 < flight.radius_m < _HUGE_M:
             continue
+        volume_m3 = 4.0 / 3.0 * math.pi * flight.radius_m**3
         if air_kg_m3 * volume_m3 > _LIGHT * flight.mass_kg:
             continue
         section_m2 = math.pi * flight.radius_m**2

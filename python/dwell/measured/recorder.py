@@ -18,7 +18,7 @@ import gymnasium
 import numpy as np
 
 from dwell import ConfigError
-from dwell.arguments import above_zero, file_path, quoted
+from dwell.arguments import above_zero, file_path, finite_number, quoted
 from dwell.files import make_folder, read_json
 from dwell.measured import maps
 from dwell.measured.importing import import_files, refuse_file_name
@@ -92,7 +92,7 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
             if os.path.lexists(path):
                 raise FileExistsError(f"{path}: is there already; remove it or choose another name")
         self._step_s = None if step_s is None else above_zero("step_s", step_s)
-        self._clock = clock
+        self._clock = _seconds_of(clock)
         self._columns = [*dict.fromkeys(_named(self._mapping["table"]))]
         self.group: str | None = None
         self.conditions = ""
@@ -250,6 +250,11 @@ class Recorder(gymnasium.Wrapper[ObsType, ActType, ObsType, ActType], Generic[Ob
                 f"mapping: table: no number {names[0]!r}; there are "
                 f"{[*itertools.islice(found, 24)]}"
             )
+
+
+def _seconds_of(clock: Callable[[], object]) -> Callable[[], float]:
+    """A clock of which each time is a finite number."""
+    return lambda: finite_number("what clock returned, s,", clock())
 
 
 def _map_of(mapping: object) -> tuple[Mapping[str, Any], str]:

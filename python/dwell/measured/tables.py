@@ -60,7 +60,8 @@ class MeasuredTable:
             self.delimiter = found.delimiter
             csv_values.require_unique_columns(path, found.columns, self._needed)
             stem = path.stem
-            for number, row in found.rows:
+            rows = found.rows if found.rows_with is None else found.rows_with(self._needed)
+            for number, row in rows:
                 row.setdefault(FILE_COLUMN, stem)
                 row.setdefault(INDEX_COLUMN, number - 1)
                 if all(cell_text(row.get(name)) in told for name, told in self._only.items()):

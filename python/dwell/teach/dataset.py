@@ -133,7 +133,7 @@ def _label_there(place: Path, settings: TeachSettings) -> dict[str, Any] | None:
     """The label of a clip that is whole; folders get their name when they are.
 
     Raises:
-        ValueError: Something else stands there, or a file is missing.
+        ValueError: Something else stands there, or a file is missing or cut.
     """
     if not os.path.lexists(place):
         return None
@@ -147,7 +147,7 @@ def _label_there(place: Path, settings: TeachSettings) -> dict[str, Any] | None:
     if not isinstance(label, dict):
         raise ValueError(f"{place / LABEL}: expected an object, found {label!r:.60}; {anew}")
     if missing := missing_file(place, label, settings.form):
-        raise ValueError(f"{place / missing} is missing or empty; {anew}")
+        raise ValueError(f"{place / missing} is missing or cut; {anew}")
     return label
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 import itertools
 from pathlib import Path
 
+from dwell.files import errors_named
 from dwell.teach.layout import TABLE_M
 
 #: Thickness of the top and edge of a leg, m.
@@ -17,8 +18,13 @@ _Range = tuple[float, float]
 
 
 def write_table(path: Path) -> None:
-    """Writes the table as OBJ: its middle at x = z = 0, its feet at y = 0."""
-    path.write_text(_obj(_boxes()), "utf-8")
+    """Writes the table as OBJ: its middle at x = z = 0, its feet at y = 0.
+
+    Raises:
+        OSError: The system refuses.
+    """
+    with errors_named(path):
+        path.write_text(_obj(_boxes()), "utf-8")
 
 
 def _boxes() -> list[tuple[_Range, _Range, _Range]]:

@@ -14,7 +14,7 @@ from typing import Any
 import numpy as np
 from PIL import Image
 
-from dwell.files import make_folder
+from dwell.files import errors_named, is_whole, make_folder
 from dwell.sounds import write_wav
 from dwell.teach.cameras import MOUNTS
 from dwell.teach.labels import MASK_VALUES, KeyFrame
@@ -38,19 +38,17 @@ def whole_folder(place: Path) -> Iterator[Path]:
     """
     make_folder(place.parent)
     draft = place.with_name(f".{place.name}.partial-0")
-    # What a killed process has left; the recording's lock says that it is not alive.
-    if draft.exists():
-        shutil.rmtree(draft)
-    draft.mkdir()
-    try:
-        yield draft
-        os.replace(draft, place)
-    except BaseException as error:
-        shutil.rmtree(draft, ignore_errors=True)
-        # Of a disk that is full the system says no name.
-        if isinstance(error, OSError) and error.filename is None:
-            raise OSError(error.errno, error.strerror, os.fspath(place)) from None
-        raise
+    with errors_named(place):
+        # What a killed process has left; the recording's lock says that it is not alive.
+        if draft.exists():
+            shutil.rmtree(draft)
+        draft.mkdir()
+        try:
+            yield draft
+            os.replace(draft, place)
+        except BaseException:
+            shutil.rmtree(draft, ignore_errors=True)
+            raise
 
 
 def write_clip(place: Path, session: Session, clip: PlayedClip) -> dict[str, Any]:
@@ -76,7 +74,7 @@ def write_clip(place: Path, session: Session, clip: PlayedClip) -> dict[str, Any
 
 
 def missing_file(place: Path, label: dict[str, Any], form: str) -> str | None:
-    """The first file of a written clip, below its folder, that is not there or empty."""
+    """The first file of a written clip, below its folder, that is not there or cut."""
     try:
         frames = range(int(label["frames"]["count"]))
         masks = [str(view["mask"]) for key in label["key_frames"] for view in key["views"].values()]
@@ -84,7 +82,7 @@ def missing_file(place: Path, label: dict[str, Any], form: str) -> str | None:
         # Whoever lists the clips says what a label lacks.
         return None
     names = itertools.chain(("audio.wav", "speech.txt", *masks), _picture_files(frames, form))
-    return next((name for name in names if not _is_there(place / name)), None)
+    return next((name for name in names if not is_whole(place / name)), None)
 
 
 def _picture_files(frames: range, form: str) -> Iterator[str]:
@@ -95,13 +93,6 @@ def _picture_files(frames: range, form: str) -> Iterator[str]:
         for channel in ("rgb", "depth") if mount.has_depth else ("rgb",):
             for number in frames:
                 yield picture_name(mount.name, channel, number)
-
-
-def _is_there(file: Path) -> bool:
-    try:
-        return file.stat().st_size > 0
-    except OSError:
-        return False
 
 
 def picture_name(camera: str, channel: str, frame: int) -> str:

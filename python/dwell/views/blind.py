@@ -12,7 +12,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell.views.dataset import records
+from dwell.views.stored import records
 
 __all__ = ["blind_scores"]
 

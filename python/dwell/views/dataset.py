@@ -20,19 +20,18 @@ from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
 from dwell.arguments import boolean, integer_in_range
-from dwell.files import atomic_folder, lines, open_file, parse_json
+from dwell.files import atomic_folder, is_whole
 from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
 from dwell.views.questions import ask
 from dwell.views.record import HouseNames, ViewRecord, view_record
+from dwell.views.stored import RECORDS, house_rows, records
 from dwell.workers import thread_count, thread_pool, worker_count
 
 __all__ = ["LIGHTS", "ViewSettings", "house_records", "make", "records", "split_of"]
 
 #: Hours at which a generated house is seen in each light, local solar time.
 LIGHTS: dict[str, float] = {"day": 12.0, "lamp": 22.0}
-#: The file of a house's records; it is there when all else is.
-_RECORDS = "records.jsonl"
 _SEED = re.compile(r"seed:([0-9]+)")
 #: Depths in PNG are whole millimetres, up to what 16 bits hold.
 _MM_PER_M, _MOST_MM = 1000.0, 65_535.0
@@ -151,6 +150,10 @@ def make(
     Yields:
         The number of each house, its name, and how many records were made now; 0 where it was there
         already, or was skipped.
+
+    Raises:
+        ValueError: A house is there of which a file was changed or cut.
+        OSError: The system refuses.
     """
     which, shards = shard
     numbers = range(which, len(houses), shards)
@@ -161,7 +164,7 @@ def make(
         while True:
             for k, name in itertools.islice(todo, 2 * threads - len(ahead)):
                 folder = house_folder(out, k)
-                is_there = (folder / _RECORDS).exists()
+                is_there = _is_made(folder)
                 job = None if is_there else pool.submit(_make_house, name, k, folder, settings)
                 ahead.append((k, name, job))
             if not ahead:
@@ -173,6 +176,25 @@ def make(
                     on_skip(name, made)
                 made = 0
             yield k, name, made
+
+
+def _is_made(folder: Path) -> bool:
+    """Returns whether a house stands in its folder.
+
+    Raises:
+        ValueError: Its records were changed, or a picture is missing or cut.
+    """
+    if not (folder / RECORDS).exists():
+        return False
+    anew = f"remove {folder}, and the house is made anew"
+    try:
+        names = [name for row in house_rows(folder) for name in row["images"].values()]
+    except ValueError as error:
+        raise ValueError(f"{error}; {anew}") from None
+    for name in names:
+        if not is_whole(folder / name):
+            raise ValueError(f"{folder / name} is missing or cut; {anew}")
+    return True
 
 
 def house_folder(out: Path, number: int) -> Path:
@@ -207,7 +229,7 @@ def _write_house(made: Sequence[ViewRecord], number: int, folder: Path) -> None:
             record.row["id"] = f"{number:08}-{record.row['id']}"
             record.row["images"] = _write_images(draft, record)
             rows.append(json.dumps(record.row, ensure_ascii=False) + "\n")
-        (draft / _RECORDS).write_text("".join(rows), "utf-8")
+        (draft / RECORDS).write_text("".join(rows), "utf-8")
 
 
 def _write_images(folder: Path, record: ViewRecord) -> dict[str, str]:
@@ -235,30 +257,3 @@ def png_images(images: dict[str, NDArray[Any]]) -> dict[str, NDArray[Any]]:
         "instance": np.clip(images["instance"][..., 0], 0, 65_535).astype(np.uint16),
         "normals": np.rint(127.5 * (images["normals"] + 1.0)).astype(np.uint8),
     }
-
-
-def records(folder: Path) -> Iterator[tuple[dict[str, Any], Path]]:
-    """The rows of a data set in order, each with the folder of its images.
-
-    Raises:
-        ValueError: A line is no record.
-        FileNotFoundError: There is none.
-    """
-    found = False
-    for group in sorted(_folders(folder / "views")):
-        for house in sorted(_folders(group)):
-            if not (house / _RECORDS).exists():
-                continue
-            found = True
-            with open_file(house / _RECORDS) as file:
-                for number, line in enumerate(lines(file, house / _RECORDS), start=1):
-                    row = parse_json(line, f"{house / _RECORDS} line {number}")
-                    yield row, house
-    if not found:
-        raise FileNotFoundError(2, "holds no records of views", os.fspath(folder))
-
-
-def _folders(folder: Path) -> Sequence[Path]:
-    if not folder.is_dir():
-        return ()
-    return [path for path in folder.iterdir() if path.is_dir() and path.name[0] != "."]

@@ -9,7 +9,7 @@ from collections.abc import Iterable
 from pathlib import Path
 
 from dwell.views.blind import blind_scores
-from dwell.views.dataset import records
+from dwell.views.stored import records
 
 _WORD = re.compile(r"[a-z0-9'-]+")
 _LENGTHS = ("short", "normal", "long")

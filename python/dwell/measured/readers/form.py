@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator, Mapping
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Any
@@ -24,12 +24,16 @@ class OpenTable:
         rows: Each row with its number, from 1.
         delimiter: What parts the cells where they are text.
         facts: What the file itself says of columns, in words, by column.
+        rows_with: Of formats whose columns may differ in length: the rows that have these columns.
+            It refuses columns of which there are not equally many values. ``rows`` are those of
+            most columns, without the others.
     """
 
     columns: list[str]
     rows: Iterator[tuple[int, Row]]
     delimiter: str = ","
     facts: Mapping[str, str] = field(default_factory=dict)
+    rows_with: Callable[[Sequence[str]], Iterator[tuple[int, Row]]] | None = None
 
 
 @dataclass(frozen=True)

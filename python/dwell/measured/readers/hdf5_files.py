@@ -7,7 +7,8 @@ links, virtual datasets and values in other files are refused.
 from __future__ import annotations
 
 import contextlib
-from collections.abc import Iterator
+from collections import Counter
+from collections.abc import Iterator, Sequence
 from pathlib import Path
 from typing import Any
 
@@ -70,7 +71,11 @@ def _open(path: Path, part: str | None) -> OpenTable:
     columns = [name for own in _columns(widths).values() for name in own]
     if len(columns) > MAX_COLUMNS:
         raise ValueError(f"{path}: {len(columns)} columns; at most {MAX_COLUMNS} are read")
-    return OpenTable([GROUP_COLUMN, "{index}", *columns], _rows(path, part))
+    return OpenTable(
+        [GROUP_COLUMN, "{index}", *columns],
+        _rows(path, part),
+        rows_with=lambda needed: _rows(path, part, needed),
+    )
 
 
 def _parts(path: Path) -> list[str]:
@@ -81,24 +86,51 @@ def _parts(path: Path) -> list[str]:
         return groups or ["/"]
 
 
-def _rows(path: Path, part: str | None) -> Iterator[tuple[int, Row]]:
+def _rows(path: Path, part: str | None, needed: Sequence[str] = ()) -> Iterator[tuple[int, Row]]:
+    """The rows of all groups, of the arrays that are as long as those of the needed columns."""
     number = 0
     with _opened(path) as (h5py, file):
         for name, group in _episodes(h5py, path, _group(h5py, path, file, part or "/")):
             arrays = _arrays(h5py, path, group)
-            lengths = {key: array.shape[0] for key, array in arrays.items()}
-            count = min(lengths.values())
             own = _columns({key: array.shape for key, array in arrays.items()})
+            lengths = {key: array.shape[0] for key, array in arrays.items()}
+            count = _length(f"{path}: group {name!r}", lengths, own, {*needed})
             blocks = {
-                key: np.asarray(array[:count], np.float64).reshape(count, -1)
+                key: np.asarray(array, np.float64).reshape(count, -1)
                 for key, array in arrays.items()
+                if lengths[key] == count
             }
             for k in range(count):
                 number += 1
                 row: Row = {GROUP_COLUMN: name, "{index}": k}
-                for key, names in own.items():
-                    row.update(zip(names, blocks[key][k].tolist(), strict=True))
+                for key, block in blocks.items():
+                    row.update(zip(own[key], block[k].tolist(), strict=True))
                 yield number, row
+
+
+def _length(
+    at: str, lengths: dict[str, int], columns: dict[str, list[str]], needed: set[str]
+) -> int:
+    """How many rows a group has: of the arrays of needed columns, else of most arrays.
+
+    Raises:
+        ValueError: Two arrays of needed columns differ; nobody knows which rows belong together.
+    """
+    first: tuple[str, int] | None = None
+    for key, names in columns.items():
+        if not (used := [name for name in names if name in needed]):
+            continue
+        if first is None:
+            first = used[0], lengths[key]
+        elif lengths[key] != first[1]:
+            raise ValueError(
+                f"{at}: column {first[0]!r} has {first[1]} rows and column {used[0]!r} has "
+                f"{lengths[key]}; columns of a table are needed of one length"
+            )
+    if first is not None:
+        return first[1]
+    counts = Counter(lengths.values())
+    return max(counts, key=lambda count: (counts[count], count))
 
 
 def _is_hard(h5py: Any, group: Any, name: str) -> bool:  # noqa: ANN401
@@ -139,7 +171,7 @@ def _episodes(h5py: Any, path: Path, group: Any) -> Iterator[tuple[str, Any]]:  
 
 
 def _arrays(h5py: Any, path: Path, group: Any, *, deep: bool = True) -> dict[str, Any]:  # noqa: ANN401
-    """The arrays of numbers of a group and those below it, by path; one length for all."""
+    """The arrays of numbers of a group and those below it, by path."""
     found: dict[str, Any] = {}
     seen: set[int] = set()
 

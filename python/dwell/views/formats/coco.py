@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 from pathlib import Path
 from typing import Any
 
@@ -10,6 +9,7 @@ import numpy as np
 from PIL import Image
 
 from dwell.views.formats.coco_parts import Instances, by_split, save
+from dwell.views.stored import copy_picture, picture
 
 
 def write(folder: Path, out: Path) -> None:
@@ -28,10 +28,9 @@ def write(folder: Path, out: Path) -> None:
         for name in (split, f"panoptic_{split}"):
             (out / name).mkdir(exist_ok=True)
         name = f"{row['id']}.png"
-        shutil.copyfile(house / row["images"]["rgb"], out / split / name)
+        copy_picture(house, row["images"]["rgb"], out / split / name)
         image = of_split.add(row, name)
-        with Image.open(house / row["images"]["instance"]) as opened:
-            ids = np.asarray(opened).astype(np.int32)
+        ids = picture(house, row["images"]["instance"]).astype(np.int32)
         known = [thing["id"] for thing in row["things"]]
         ids = np.where(np.isin(ids, known), ids, 0)
         colors = np.stack([ids % 256, ids // 256 % 256, ids // 65_536], axis=-1).astype(np.uint8)

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from dwell import _native
-from dwell.views.dataset import records
+from dwell.views.stored import records
 
 
 def categories() -> list[dict[str, Any]]:

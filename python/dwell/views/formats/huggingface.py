@@ -3,12 +3,11 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
-from dwell.views.dataset import records
 from dwell.views.datasheet import datasheet
 from dwell.views.formats.splits import SplitFiles
+from dwell.views.stored import copy_picture, records
 
 _CARD = """---
 configs:
@@ -38,7 +37,7 @@ def write(folder: Path, out: Path) -> None:
                 parts.append(split)
                 (out / split).mkdir()
             name = f"{row['id']}.png"
-            shutil.copyfile(house / row["images"]["rgb"], out / split / name)
+            copy_picture(house, row["images"]["rgb"], out / split / name)
             told = {
                 "file_name": name,
                 **{field: row[field] for field in ("id", "house", "light")},

@@ -3,11 +3,10 @@
 from __future__ import annotations
 
 import json
-import shutil
 from pathlib import Path
 
-from dwell.views.dataset import records
 from dwell.views.formats.splits import SplitFiles
+from dwell.views.stored import copy_picture, records
 
 
 def write(folder: Path, out: Path) -> None:
@@ -17,7 +16,7 @@ def write(folder: Path, out: Path) -> None:
             there = out / "images" / house.name
             there.mkdir(parents=True, exist_ok=True)
             for name in row["images"].values():
-                shutil.copyfile(house / name, there / name)
+                copy_picture(house, name, there / name)
             paths = {kind: f"images/{house.name}/{name}" for kind, name in row["images"].items()}
             line = json.dumps({**row, "images": paths}, ensure_ascii=False) + "\n"
             files.of(row["split"]).write(line.encode())

@@ -6,7 +6,7 @@ import json
 from pathlib import Path
 from typing import Any
 
-from dwell.views.dataset import records
+from dwell.views.stored import picture_bytes, records
 
 #: Rows that are written at a time.
 _ROWS = 256
@@ -73,7 +73,7 @@ _PICTURES = {"rgb": "image", "depth": "depth", "instance": "instance", "normals"
 def table_row(row: dict[str, Any], house: Path) -> dict[str, Any]:
     """A record as a row of a table."""
     pictures = {
-        _PICTURES[kind]: {"bytes": (house / name).read_bytes(), "path": name}
+        _PICTURES[kind]: {"bytes": picture_bytes(house, name), "path": name}
         for kind, name in row["images"].items()
     }
     return {

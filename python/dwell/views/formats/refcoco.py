@@ -3,11 +3,11 @@
 from __future__ import annotations
 
 import re
-import shutil
 from pathlib import Path
 from typing import Any
 
 from dwell.views.formats.coco_parts import Instances, by_split, save
+from dwell.views.stored import copy_picture
 
 
 def write(folder: Path, out: Path) -> None:
@@ -22,7 +22,7 @@ def write(folder: Path, out: Path) -> None:
     sentences = 0
     for split, row, house in by_split(folder):
         name = f"{row['id']}.png"
-        shutil.copyfile(house / row["images"]["rgb"], out / "images" / name)
+        copy_picture(house, row["images"]["rgb"], out / "images" / name)
         first = len(instances.annotations)
         image = instances.add(row, name)
         annotation_of = {own["instance_id"]: own for own in instances.annotations[first:]}

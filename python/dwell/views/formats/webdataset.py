@@ -8,7 +8,7 @@ import json
 import tarfile
 from pathlib import Path
 
-from dwell.views.dataset import records
+from dwell.views.stored import picture_bytes, records
 
 #: Views of a shard.
 _VIEWS = 1000
@@ -33,7 +33,7 @@ def write(folder: Path, out: Path) -> None:
                 tars[split] = stack.enter_context(opened)
             counts[split] = number + 1
             for kind, name in row["images"].items():
-                _add(tars[split], f"{row['id']}.{kind}.png", (house / name).read_bytes())
+                _add(tars[split], f"{row['id']}.{kind}.png", picture_bytes(house, name))
             text = json.dumps(row, ensure_ascii=False).encode()
             _add(tars[split], f"{row['id']}.json", text)
 
