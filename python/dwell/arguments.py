@@ -294,9 +294,9 @@ def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     return value
 
 
-def text_list(name: str, values: object) -> list[str]:
+def text_list(name: str, values: object, *, most: int = _MOST_LISTED) -> list[str]:
     """A list of text; one text alone is none."""
-    rows = sequence_items(name, values, "expected a list of text")
+    rows = sequence_items(name, values, "expected a list of text", most=most)
     return [text(f"{name}[{k}]", row) for k, row in enumerate(rows)]
 
 

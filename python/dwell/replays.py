@@ -168,7 +168,7 @@ class Replay:
                 actions=tuple(
                     sequence_items("actions", row["actions"], "expected a list of actions")
                 ),
-                hashes=tuple(text_list("hashes", row["hashes"])),
+                hashes=tuple(_hash_list("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
                 success=boolean("success", row["success"]),
                 made_by=text("made_by", row["made_by"]),
@@ -565,6 +565,11 @@ _FIELDS = (
 )
 
 
+def _hash_list(name: str, given: object) -> list[str]:
+    """A list of text, one more than there may be actions."""
+    return text_list(name, given, most=MAX_STEPS + 1)
+
+
 #: What the fields of a replay may be.
 _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "house": text,
@@ -572,7 +577,7 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "config": text,
     "parts": text_list,
     "actions": lambda name, given: sequence_items(name, given, "expected a list of actions"),
-    "hashes": text_list,
+    "hashes": _hash_list,
     "instruction": text,
     "success": boolean,
     "made_by": text,

@@ -30,9 +30,22 @@ pub(crate) fn world_say(
         let effort: VocalEffort = effort.read()?;
         let tokens: Vec<u32> = match words.read::<Value>()? {
             Value::String(text) => tokens_of(&text)?,
-            numbers => serde_json::from_value(numbers)?,
+            numbers => {
+                let numbers: Vec<u64> = serde_json::from_value(numbers)?;
+                let words = numbers.into_iter().map(word_number);
+                words.collect::<Result<_, _>>()?
+            }
         };
         Ok(running.world.say(agent, Utterance { tokens, effort })?)
+    })
+}
+
+/// The number of a word, if it is as small as those are.
+fn word_number(number: u64) -> Result<u32, dwell::WorldError> {
+    u32::try_from(number).map_err(|_| dwell::WorldError::Config {
+        field: "tokens",
+        found: number.to_string(),
+        allowed: format!("numbers of words, 1 to {}", vocabulary::size() - 1),
     })
 }
 

@@ -1,9 +1,9 @@
 //! Passages between rooms that no door closes.
 
 use crate::room_outline::boundary_edges;
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::{BoxTree, Ray, RayMask};
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, IdVec, RoomId};
+use dwell_scene::{Aabb, IdVec, RoomId, interrupt};
 use glam::{Vec2, Vec3};
 use std::collections::BTreeMap;
 
@@ -18,6 +18,8 @@ const HEIGHTS_M: [f32; 3] = [0.5, 1.1, 1.75];
 const LEAST_M: f32 = 0.6;
 /// Distance from a door's box within which a place belongs to the door, m.
 const DOORWAY_M: f32 = 0.15;
+/// Difference of height between a door's foot and a floor up to which the door stands on that floor, m.
+const STOREY_M: f32 = 1.0;
 
 /// For each room the rooms that open passages lead to, ascending; the relation is symmetric.
 ///
@@ -25,6 +27,8 @@ const DOORWAY_M: f32 = 0.15;
 /// and another room lies half a metre beyond. `doors`: the boxes of things that close openings; there are no passages there.
 pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<RoomId>> {
     let house = rays.house();
+    let reaches = doors.iter().map(|door| door.grown(DOORWAY_M));
+    let doors = &BoxTree::new(reaches.collect());
     let mut found: IdVec<RoomId, Vec<RoomId>> = IdVec::filled(Vec::new(), house.rooms.len());
     for room in house.rooms.ids() {
         for (other, width_m) in widths(rays, doors, room) {
@@ -42,7 +46,7 @@ pub(crate) fn passages(rays: &RayScene, doors: &[Aabb]) -> IdVec<RoomId, Vec<Roo
 }
 
 /// Returns the length of the border of `room` that is open to each other room, m.
-fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32> {
+fn widths(rays: &RayScene, doors: &BoxTree, room: RoomId) -> BTreeMap<RoomId, f32> {
     let house = rays.house();
     let mut open = BTreeMap::new();
     for [a, b] in boundary_edges(&house.rooms[room]) {
@@ -55,6 +59,7 @@ fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32
         let inward = house.rooms[room].contains_xz(a.midpoint(b) + side * 0.01);
         let out = if inward { -side } else { side };
         for k in 0..steps as usize {
+            interrupt::unwind_if_cancelled();
             let at = a + (b - a) * ((k as f32 + 0.5) / steps);
             if let Some(other) = beyond(rays, doors, room, at, out) {
                 *open.entry(other).or_insert(0.0) += length_m / steps;
@@ -65,18 +70,13 @@ fn widths(rays: &RayScene, doors: &[Aabb], room: RoomId) -> BTreeMap<RoomId, f32
 }
 
 /// The room on the other side of the border at `at`, if nothing is in between.
-fn beyond(rays: &RayScene, doors: &[Aabb], room: RoomId, at: Vec2, out: Vec2) -> Option<RoomId> {
+fn beyond(rays: &RayScene, doors: &BoxTree, room: RoomId, at: Vec2, out: Vec2) -> Option<RoomId> {
     let house = rays.house();
     let floor_y = house.rooms[room].floor_y;
     let far = at + out * BEYOND_M;
     let middle = Vec3::new(far.x, floor_y + HEIGHTS_M[1], far.y);
     let other = house.room_at(middle).filter(|other| *other != room)?;
-    let of_door = |door: &&Aabb| {
-        door.grown(DOORWAY_M)
-            .contains(Vec3::new(at.x, door.center().y, at.y))
-    };
-    let on_storey = |door: &&Aabb| (door.min.y - floor_y).abs() < 1.0;
-    if doors.iter().filter(on_storey).any(|door| of_door(&door)) {
+    if is_at_door(doors, at, floor_y) {
         return None;
     }
     let near = at - out * BEFORE_M;
@@ -86,4 +86,37 @@ fn beyond(rays: &RayScene, doors: &[Aabb], room: RoomId, at: Vec2, out: Vec2) ->
         !rays.occluded(&ray, RayMask::EYE)
     };
     HEIGHTS_M.iter().all(free).then_some(other)
+}
+
+/// Returns whether a place on a floor lies within the reach of a door that stands on this floor. `doors`: their boxes, grown by [`DOORWAY_M`].
+fn is_at_door(doors: &BoxTree, at: Vec2, floor_y: f32) -> bool {
+    let [low, high] = [-1.0, 1.0].map(|side| floor_y + side * (STOREY_M + 2.0 * DOORWAY_M));
+    let column = Aabb::new(Vec3::new(at.x, low, at.y), Vec3::new(at.x, high, at.y));
+    let mut near = doors.intersecting(&column).into_iter();
+    let foot_y = |k| doors.get(k).map(|reach| reach.min.y + DOORWAY_M);
+    near.any(|k| foot_y(k).is_some_and(|y| (y - floor_y).abs() < STOREY_M))
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn a_door_takes_the_places_about_it_on_its_own_floor() {
+        let door = Aabb::new(Vec3::new(1.0, 3.0, 2.0), Vec3::new(2.0, 5.0, 2.1));
+        let doors = BoxTree::new(vec![door.grown(DOORWAY_M)]);
+        for (x, z, floor_y, expected) in [
+            (1.5, 2.05, 3.0, true),
+            (2.1, 2.2, 3.0, true),
+            (2.2, 2.05, 3.0, false),
+            (1.5, 2.3, 3.0, false),
+            (1.5, 2.05, 2.1, true),
+            (1.5, 2.05, 3.9, true),
+            (1.5, 2.05, 0.0, false),
+            (1.5, 2.05, 4.1, false),
+        ] {
+            let found = is_at_door(&doors, Vec2::new(x, z), floor_y);
+            assert_eq!(found, expected, "({x}, {z}) on a floor at {floor_y}");
+        }
+    }
 }

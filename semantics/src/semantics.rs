@@ -71,9 +71,11 @@ impl Semantics {
             })
             .into();
         let doors = facts.iter_ids().filter(|(_, facts)| facts.is_door());
-        let doorways: BTreeMap<ObjectId, RoomDoorway> = doors
-            .map(|(id, _)| (id, RoomDoorway::gather(&rays, &state, id, bounds[id])))
-            .collect();
+        let doors: Vec<ObjectId> = doors.map(|(id, _)| id).collect();
+        let ways = threads.map(doors.len(), |k| {
+            RoomDoorway::gather(&rays, &state, doors[k], bounds[doors[k]])
+        });
+        let doorways: BTreeMap<ObjectId, RoomDoorway> = doors.into_iter().zip(ways).collect();
         let doors: Vec<Aabb> = doorways.keys().map(|id| bounds[*id]).collect();
         let contents = RoomContents::gather(house, &bounds, &facts);
         Self {

@@ -14,6 +14,21 @@ pub(crate) fn write_file(path: &Path, bytes: &[u8]) -> Result<(), HousesError> {
     file::write(path, bytes).map_err(HousesError::io(path))
 }
 
+/// Refuses a link, for what is written below a folder of many houses: it may lead to somebody else's house.
+///
+/// # Errors
+/// [`HousesError::NotRepresentable`].
+pub(crate) fn refuse_link(path: &Path) -> Result<(), HousesError> {
+    if !path.is_symlink() {
+        return Ok(());
+    }
+    let message = "a link stands there; what it leads to is not replaced".to_owned();
+    Err(HousesError::NotRepresentable {
+        path: path.to_owned(),
+        message,
+    })
+}
+
 /// Fills a folder under another name and moves it into place. An old folder there is replaced if `is_ours` is true for it. A
 /// link is followed to the folder it leads to.
 ///

@@ -25,6 +25,20 @@ const KINDS: [(&str, &str); 5] = [
 ];
 const EXPECTED: &str = "expected ";
 
+/// The smallest and the largest number of the types of whole numbers.
+const LIMITS: [(&str, i128, i128); 10] = [
+    ("u8", 0, u8::MAX as i128),
+    ("u16", 0, u16::MAX as i128),
+    ("u32", 0, u32::MAX as i128),
+    ("u64", 0, u64::MAX as i128),
+    ("usize", 0, usize::MAX as i128),
+    ("i8", i8::MIN as i128, i8::MAX as i128),
+    ("i16", i16::MIN as i128, i16::MAX as i128),
+    ("i32", i32::MIN as i128, i32::MAX as i128),
+    ("i64", i64::MIN as i128, i64::MAX as i128),
+    ("isize", isize::MIN as i128, isize::MAX as i128),
+];
+
 /// The sentence of an error, with the expected value in plain words.
 pub fn plain_parse_error(error: impl Display) -> String {
     let text = error.to_string();
@@ -39,9 +53,27 @@ pub fn plain_parse_error(error: impl Display) -> String {
         told.push_str(before);
         let (words, length) = type_in_words(after).unwrap_or(("", 0));
         told.push_str(words);
+        let beyond = limits_passed(before, &after[..length]);
+        if let Some((low, high)) = beyond {
+            let low = if low < 0 {
+                format!(" from {low}")
+            } else {
+                String::new()
+            };
+            told.push_str(&format!("{low} to {high}"));
+        }
         rest = &after[length..];
     }
     told + rest
+}
+
+/// The limits of the type called `expected`, where the text before it tells a number beyond the largest or below a negative smallest
+/// one: that a number is not negative is in the type's words.
+fn limits_passed(before: &str, expected: &str) -> Option<(i128, i128)> {
+    let (_, found) = before.rsplit_once("integer `")?;
+    let number: i128 = found.split('`').next()?.parse().ok()?;
+    let (_, low, high) = LIMITS.iter().find(|(name, ..)| *name == expected)?;
+    (number > *high || number < (*low).min(-1)).then_some((*low, *high))
 }
 
 /// The words for the beginning of a text, and its length.
@@ -84,6 +116,14 @@ mod tests {
             (
                 "invalid type: map, expected f32\nexpected i64",
                 "invalid type: map, expected a number\nexpected a whole number",
+            ),
+            (
+                "invalid value: integer `4294967296`, expected u32",
+                "invalid value: integer `4294967296`, expected a whole number from 0 to 4294967295",
+            ),
+            (
+                "invalid value: integer `-200`, expected i8 at line 1 column 5",
+                "invalid value: integer `-200`, expected a whole number from -128 to 127 at line 1 column 5",
             ),
             ("expected `,` or `}`", "expected `,` or `}`"),
             (

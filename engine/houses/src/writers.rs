@@ -5,6 +5,7 @@ use std::path::{Path, PathBuf};
 
 use dwell_scene::House;
 
+use crate::atomic::refuse_link;
 use crate::error::HousesError;
 use crate::export_loss::ExportLoss;
 
@@ -50,6 +51,7 @@ pub fn writers() -> &'static [HouseWriter] {
                 let folder = root.join("house");
                 fs::create_dir_all(&folder).map_err(HousesError::io(&folder))?;
                 let path = folder.join(format!("{name}.glb"));
+                refuse_link(&path)?;
                 crate::gltf::write(house, &path).map(|losses| (path, losses))
             },
             finish: |_| Ok(()),

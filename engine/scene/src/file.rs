@@ -3,6 +3,7 @@
 //! Opening a named pipe waits for a writer, and a device may have no end; so only regular files are read, to a cap. Only
 //! regular files are replaced, and a file appears whole or not at all.
 
+use crate::interrupt::{self, CancelPoller};
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
 use std::io::{self, Read as _, Write as _};
 use std::path::{Path, PathBuf};
@@ -13,6 +14,8 @@ pub const MAX_JSON_DEPTH: usize = 128;
 const MOST_DRAFTS: usize = 10_000;
 /// Bytes of the target's name that a draft's name keeps; names have 255 at most.
 const DRAFT_NAME_BYTES: usize = 200;
+/// Bytes that are written between checks for cancellation.
+const PIECE_BYTES: usize = 1 << 20;
 
 /// The reason why a file was not read.
 #[derive(Debug, thiserror::Error)]
@@ -77,8 +80,62 @@ pub fn read(path: &Path, max_bytes: u64) -> Result<Vec<u8>, ReadError> {
 pub fn write(path: &Path, bytes: &[u8]) -> io::Result<()> {
     let place = resolve_write_target(path)?;
     let mut draft = StagedPath::file(&place)?;
-    draft.handle.write_all(bytes)?;
+    write_in_pieces(&mut draft.handle, bytes)?;
     fs::rename(&draft.path, &place)
+}
+
+/// Writes all bytes; can be cancelled between pieces: see [`interrupt`].
+///
+/// # Errors
+/// When the system refuses.
+pub fn write_in_pieces(to: &mut impl io::Write, bytes: &[u8]) -> io::Result<()> {
+    for piece in bytes.chunks(PIECE_BYTES) {
+        interrupt::unwind_if_cancelled();
+        to.write_all(piece)?;
+    }
+    Ok(())
+}
+
+/// What can be cancelled whenever a number of bytes has passed: for code of others that reads or writes much.
+#[derive(Debug)]
+pub struct CancellableStream<T> {
+    stream: T,
+    poller: CancelPoller,
+}
+
+impl<T> CancellableStream<T> {
+    /// A stream that is passed on.
+    pub fn new(stream: T) -> Self {
+        Self {
+            stream,
+            poller: CancelPoller::new(PIECE_BYTES / 16),
+        }
+    }
+
+    /// Returns the stream.
+    pub fn into_inner(self) -> T {
+        self.stream
+    }
+}
+
+impl<T: io::Read> io::Read for CancellableStream<T> {
+    fn read(&mut self, buffer: &mut [u8]) -> io::Result<usize> {
+        let count = self.stream.read(buffer)?;
+        self.poller.count_many(count);
+        Ok(count)
+    }
+}
+
+impl<T: io::Write> io::Write for CancellableStream<T> {
+    fn write(&mut self, bytes: &[u8]) -> io::Result<usize> {
+        let count = self.stream.write(bytes)?;
+        self.poller.count_many(count);
+        Ok(count)
+    }
+
+    fn flush(&mut self) -> io::Result<()> {
+        self.stream.flush()
+    }
 }
 
 /// Returns the path that a file written to `path` will have: another one when `path` is a link.

@@ -5,8 +5,9 @@ use crate::error::WorldError;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::{ln, wrap_angle};
 use dwell_scene::navigation::NavGrid;
+use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{AgentBody, House, IdVec, Pose, RoomId};
+use dwell_scene::{AgentBody, House, Id, IdVec, Pose, RoomId, interrupt};
 use glam::Vec3;
 use serde::Serialize;
 use serde_json::{Value, json};
@@ -21,12 +22,15 @@ pub fn house_info(engines: &Engines, report: &Value) -> Value {
             .entry(object.category.coarse.as_str())
             .or_default() += 1;
     }
+    let mut objects: IdVec<RoomId, usize> = IdVec::filled(0, house.rooms.len());
+    for room in house.objects.iter().filter_map(|object| object.room) {
+        objects[room] += 1;
+    }
     let rooms: Vec<Value> = house
         .rooms
         .iter_ids()
         .map(|(id, room)| {
-            let objects = house.objects.iter().filter(|object| object.room == Some(id)).count();
-            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.exclusive_area_m2(id), "objects": objects})
+            json!({"name": room.name, "kinds": room.kinds, "level": room.level.0, "area_m2": house.exclusive_area_m2(id), "objects": objects[id]})
         })
         .collect();
     let starts: Vec<Value> = house
@@ -95,13 +99,10 @@ pub fn best_room_viewpoints(engines: &Engines) -> Result<Vec<RoomViewpoint>, Wor
     let grid = engines.nav_grid(&body)?;
     let rays = RayScene::new(house.clone());
     let places = walkable_places(house, &grid);
-    let rooms = places.iter_ids();
-    Ok(rooms
-        .map(|(room, places)| {
-            dwell_scene::interrupt::unwind_if_cancelled();
-            viewpoint(&rays, places, room, body.eye_height_m)
-        })
-        .collect())
+    Ok(Threads::resolve(None).map(places.len(), |k| {
+        let room = RoomId::from_index(k);
+        viewpoint(&rays, &places[room], room, body.eye_height_m)
+    }))
 }
 
 /// Returns the walkable places on the floor of each room, m.
@@ -109,7 +110,7 @@ fn walkable_places(house: &House, grid: &NavGrid) -> IdVec<RoomId, Vec<Vec3>> {
     let mut places = IdVec::filled(Vec::new(), house.rooms.len());
     for (k, cell) in grid.walkable().enumerate() {
         if k % 4096 == 0 {
-            dwell_scene::interrupt::unwind_if_cancelled();
+            interrupt::unwind_if_cancelled();
         }
         let place = grid.position(cell);
         let room = house.room_at(place + Vec3::Y * 0.1);
@@ -160,6 +161,7 @@ fn view_score(rays: &RayScene, room: RoomId, world_from_eye: &Pose) -> f32 {
     let mut seen: Vec<i32> = Vec::new();
     let mut sum = 0.0;
     for row in 0..down {
+        interrupt::unwind_if_cancelled();
         for column in 0..across {
             let x = 2.0 * (column as f32 + 0.5) / across as f32 - 1.0;
             let y = 1.0 - 2.0 * (row as f32 + 0.5) / down as f32;

@@ -5,6 +5,10 @@ use super::witness::{MOST_WITNESSES, WitnessedTruth};
 use crate::form::{Description, Phrase, Quantifier};
 use crate::scene::Term;
 use crate::truth::{Truth, UndecidedReason};
+use dwell_scene::interrupt::CancelPoller;
+
+/// Terms that a phrase ranges over between checks for cancellation.
+const TERMS_PER_CHECK: usize = 64;
 
 /// A clause as a function of its arguments.
 type Body<'a> = &'a dyn Fn(&[Term]) -> WitnessedTruth;
@@ -53,6 +57,11 @@ impl Checker<'_> {
         if let Some(reason) = extension.fault {
             return WitnessedTruth::undecided(reason);
         }
+        let mut poll = CancelPoller::new(TERMS_PER_CHECK);
+        let with: &mut dyn FnMut(Term) -> WitnessedTruth = &mut |term| {
+            poll.count_one();
+            with(term)
+        };
         // Of a thing that may or may not fit the clause is undecided, except where the result is the same either way.
         let fitting = extension.fits.iter().map(|term| (*term, None));
         let undecided = extension

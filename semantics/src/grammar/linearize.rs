@@ -2,6 +2,7 @@
 
 use super::compile::{ArgumentKind, NonTerminal, Symbol};
 use super::{Grammar, Tree};
+use dwell_scene::interrupt;
 
 /// The words of a tree, with those of its arguments nested.
 #[derive(Clone, Debug, PartialEq, Eq)]
@@ -21,6 +22,7 @@ impl Grammar {
         category: NonTerminal,
         choose: WordingChooser<'_>,
     ) -> Option<Vec<LinearizedNode>> {
+        interrupt::unwind_if_cancelled();
         let Tree::Apply {
             function,
             arguments,

@@ -5,8 +5,12 @@ use super::from_tree;
 use super::to_tree::{TreeBuilder, count};
 use crate::form::{Description, Form, Noun, Phrase};
 use crate::grammar::{Span, Tree, WordingChooser};
+use dwell_scene::interrupt;
 use dwell_scene::random::RandomKey;
 use serde::{Deserialize, Serialize};
+
+/// Most functions, words and numbers of a tree that is said. Its phrases lie in each other: finding their places takes n² steps.
+const MAX_NODES: usize = 8192;
 
 /// The place of a noun phrase in the text of a form.
 #[derive(Clone, Debug, PartialEq, Eq, Serialize, Deserialize)]
@@ -65,7 +69,8 @@ impl Language {
         }
     }
 
-    /// Returns the text of `form`; `None` if the grammar has no wording for it: an unknown noun, a modifier where none is allowed.
+    /// Returns the text of `form`; `None` if the grammar has no wording for it: an unknown noun, a modifier where none is allowed, more
+    /// than some 1000 modifiers.
     /// Without a key every rule uses its first wording; with one, wordings are drawn.
     ///
     /// # Determinism
@@ -82,6 +87,9 @@ impl Language {
     /// As [`Self::say`], with wordings that `choose` chooses.
     pub(crate) fn say_choosing(&self, form: &Form, choose: WordingChooser<'_>) -> Option<Sentence> {
         let tree = self.builder().form(form)?;
+        if is_too_large(&tree) {
+            return None;
+        }
         let (mut text, spans) = self.grammar.linearize(&tree, choose)?;
         if matches!(form, Form::NounPhrase(_))
             && let Some(first) = text.get_mut(..1)
@@ -93,6 +101,7 @@ impl Language {
         let mut sorted: Vec<&Span> = spans.iter().collect();
         sorted.sort_by_key(|span| (span.start, usize::MAX - span.end, span.path.len()));
         for Span { path, start, end } in sorted {
+            interrupt::unwind_if_cancelled();
             // A noun phrase that another wraps without adding a word is one phrase, the outer one.
             let same = phrases.last();
             if same.is_some_and(|last| (last.start, last.end) == (*start, *end)) {
@@ -105,5 +114,44 @@ impl Language {
             }));
         }
         Some(Sentence { text, phrases })
+    }
+}
+
+/// Returns whether a tree has more than [`MAX_NODES`].
+fn is_too_large(tree: &Tree) -> bool {
+    let mut open = vec![tree];
+    let mut count = 0;
+    while let Some(tree) = open.pop() {
+        count += 1;
+        if count > MAX_NODES {
+            return true;
+        }
+        if let Tree::Apply { arguments, .. } = tree {
+            open.extend(arguments);
+        }
+    }
+    false
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use crate::form::Clause;
+
+    #[test]
+    fn forms_of_thousands_of_modifiers_are_not_said() {
+        let language = Language::english();
+        let read = language.read("There is a red bed next to a table.").unwrap();
+        let with_modifiers = |count: usize| {
+            let Form::Claim(Clause::Exists(Phrase::Described(mut bed))) = read.forms[0].clone()
+            else {
+                panic!("{:?}", read.forms[0])
+            };
+            let one = bed.modifiers[0].clone();
+            bed.modifiers = vec![one; count];
+            Form::Claim(Clause::Exists(Phrase::Described(bed)))
+        };
+        assert!(language.say(&with_modifiers(100), None).is_some());
+        assert_eq!(language.say(&with_modifiers(10_000), None), None);
     }
 }

@@ -278,14 +278,7 @@ impl<'a> EditSession<'a> {
     }
 
     fn rename(&mut self, change: &Rename) -> Result<(), HousesError> {
-        if change.new_name.trim().is_empty() || change.new_name.contains(char::is_control) {
-            let allowed = "a name, without control characters";
-            return Err(invalid_field(
-                "to",
-                format_args!("{:?}", change.new_name),
-                allowed,
-            ));
-        }
+        check_is_name("to", &change.new_name)?;
         if change.kind.is_some() && change.room.is_none() {
             return Err(invalid_field(
                 "kind",
@@ -338,8 +331,8 @@ impl<'a> EditSession<'a> {
 
     /// Refuses an object's name that is empty or taken.
     pub(super) fn check_name_is_free(&self, field: &str, name: &str) -> Result<(), HousesError> {
-        let is_name = !name.trim().is_empty() && !name.contains(char::is_control);
-        if !is_name || self.object_index.find(name).is_some() {
+        check_is_name(field, name)?;
+        if self.object_index.find(name).is_some() {
             let possible = "a name that no other object has";
             return Err(invalid_field(field, format_args!("{name:?}"), possible));
         }
@@ -355,4 +348,13 @@ impl<'a> EditSession<'a> {
         }
         bounds.transformed(&part.part_from_mesh).center()
     }
+}
+
+/// Refuses a name of blanks alone, and one with control characters.
+fn check_is_name(field: &str, name: &str) -> Result<(), HousesError> {
+    if name.trim().is_empty() || name.contains(char::is_control) {
+        let possible = "a name, without control characters";
+        return Err(invalid_field(field, format_args!("{name:?}"), possible));
+    }
+    Ok(())
 }

@@ -1,9 +1,13 @@
 //! The container: one JSON chunk, one binary chunk, accessors into it.
 
+use dwell_scene::file::{CancellableStream, write_in_pieces};
+use dwell_scene::interrupt::CancelPoller;
 use serde_json::{Value, json};
 
 /// Accessor component type: 32-bit float.
 const FLOAT: u32 = 5126;
+/// Rows of numbers between checks for cancellation.
+const ROWS_PER_CHECK: usize = 100_000;
 /// Accessor component type: 32-bit index.
 pub(crate) const UNSIGNED_INT: u32 = 5125;
 /// Accessor component type: 16-bit index.
@@ -121,7 +125,9 @@ impl GlbBufferBuilder {
     ) -> usize {
         let (mut low, mut high) = ([f32::MAX; N], [f32::MIN; N]);
         let (mut bytes, mut count) = (Vec::new(), 0);
+        let mut poller = CancelPoller::new(ROWS_PER_CHECK);
         for row in rows {
+            poller.count_one();
             count += 1;
             for (k, value) in row.into_iter().enumerate() {
                 low[k] = low[k].min(value);
@@ -167,7 +173,9 @@ impl GlbBufferBuilder {
             buffers
                 .filter_map(|Buffer { bytes, path }| path.map(|path| SidecarFile { path, bytes })),
         );
-        let mut text = document.to_string().into_bytes();
+        let mut text = CancellableStream::new(Vec::new());
+        serde_json::to_writer(&mut text, &document).map_err(|error| error.to_string())?;
+        let mut text = text.into_inner();
         text.resize(text.len().next_multiple_of(4), b' ');
         binary.resize(binary.len().next_multiple_of(4), 0);
         let chunk = if binary.is_empty() {
@@ -189,7 +197,7 @@ impl GlbBufferBuilder {
         if chunk > 0 {
             file.extend_from_slice(&length(binary.len())?.to_le_bytes());
             file.extend_from_slice(b"BIN\0");
-            file.append(&mut binary);
+            write_in_pieces(&mut file, &binary).map_err(|error| error.to_string())?;
         }
         Ok((file, beside))
     }

@@ -1,13 +1,14 @@
 //! Writing of `NAME.dwell/`.
 
-use std::fs;
+use std::fs::{self, File};
 use std::path::{Path, PathBuf};
 
-use dwell_scene::{House, HouseData, IdVec};
+use dwell_scene::file::{CancellableStream, write_in_pieces};
+use dwell_scene::{House, HouseData, IdVec, interrupt};
 
 use super::file::{FORMAT, NativeFile, VERSION, is_sound, sound_path};
 use super::{GEOMETRY, TABLES};
-use crate::atomic::write_folder;
+use crate::atomic::{refuse_link, write_folder};
 use crate::error::HousesError;
 use crate::gltf::{AssetStorage, encode};
 use crate::limits::MAX_TEXT_BYTES;
@@ -53,9 +54,11 @@ pub fn write(house: &House, path: &Path) -> Result<(), HousesError> {
 /// all houses of `root` share them. Returns the house's folder.
 ///
 /// # Errors
-/// Those of [`write()`].
+/// Those of [`write()`], and [`HousesError::NotRepresentable`] where a link stands in the house's place: what it leads to is not of this
+/// folder.
 pub fn write_into(house: &House, root: &Path, name: &str) -> Result<PathBuf, HousesError> {
     let path = root.join("house").join(format!("{name}.dwell"));
+    refuse_link(&path)?;
     for folder in ["house", "object", "texture"] {
         let folder = root.join(folder);
         fs::create_dir_all(&folder).map_err(HousesError::io(&folder))?;
@@ -91,7 +94,9 @@ fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), Hou
             ..house.data().clone()
         },
     };
-    let text = serde_json::to_vec(&file).map_err(|error| unwritable(error.to_string()))?;
+    let mut text = CancellableStream::new(Vec::new());
+    serde_json::to_writer(&mut text, &file).map_err(|error| unwritable(error.to_string()))?;
+    let text = text.into_inner();
     if text.len() as u64 > MAX_TEXT_BYTES {
         let bytes = text.len();
         return Err(unwritable(format!(
@@ -99,7 +104,8 @@ fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), Hou
         )));
     }
     // JSON has no infinity and no NaN: such a number would come back as something else, so it is refused here.
-    if let Err(error) = serde_json::from_slice::<NativeFile>(&text) {
+    let again = CancellableStream::new(text.as_slice());
+    if let Err(error) = serde_json::from_reader::<_, NativeFile>(again) {
         return Err(unwritable(format!(
             "a table holds a number that is not finite ({error})"
         )));
@@ -107,6 +113,7 @@ fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), Hou
     // Shared files come first: a house that exists is complete.
     if let Some(root) = path.parent().and_then(Path::parent) {
         for beside in &written.sidecars {
+            interrupt::unwind_if_cancelled();
             let path = root.join(&beside.path);
             // The name is the content's, so an existing file is the same, unless it was cut.
             let is_whole = |found: fs::Metadata| found.len() == beside.bytes.len() as u64;
@@ -118,10 +125,13 @@ fn write_as(house: &House, path: &Path, storage: AssetStorage) -> Result<(), Hou
     write_folder(path, is_house, |folder| {
         for (name, bytes) in [(TABLES, &text), (GEOMETRY, &written.file)] {
             let path = folder.join(name);
-            fs::write(&path, bytes).map_err(HousesError::io(&path))?;
+            let written =
+                File::create(&path).and_then(|mut file| write_in_pieces(&mut file, bytes));
+            written.map_err(HousesError::io(&path))?;
         }
         for (k, sound) in house.sound_files.iter().enumerate() {
             let path = folder.join(sound_path(k, &sound.name));
+            interrupt::unwind_if_cancelled();
             fs::write(&path, &sound.bytes).map_err(HousesError::io(&path))?;
         }
         Ok(())

@@ -12,7 +12,7 @@ use glam::Affine3A;
 use super::file::FaceGroup;
 use super::load::{ParsedObj, parse_obj_with_mtl};
 use super::read_obj;
-use super::shape::{MaterialSlots, ObjGroupSelection, build_mesh};
+use super::shape::{MAX_SLOTS, MaterialSlots, ObjGroupSelection, build_mesh};
 use crate::data_root::DataRoot;
 use crate::error::HousesError;
 use crate::import::{
@@ -59,6 +59,14 @@ pub(crate) fn read_scene(
     let wanted: BTreeSet<String> = files.textures.iter().flatten().cloned().collect();
     let images = read_images(&root, wanted, threads, report);
     let slots = MaterialSlots::from_obj_and_mtl(&files.obj, &files.mtl, &at, report);
+    if slots.left_out > 0 {
+        return Err(HousesError::TooLarge {
+            at: at.field("mtllib"),
+            what: "count of materials",
+            found: (slots.entries.len() + slots.left_out) as u64,
+            allowed: MAX_SLOTS as u64,
+        });
+    }
     let texture_ids: BTreeMap<&str, TextureId> = images
         .keys()
         .enumerate()

@@ -1,6 +1,6 @@
 //! Conversion of faces of an OBJ file into triangle meshes.
 
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 
 use dwell_scene::Mesh;
 use dwell_scene::interrupt::CancelPoller;
@@ -12,7 +12,7 @@ use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
 /// Largest number of material slots of one mesh: slots are 16-bit numbers.
-const MAX_SLOTS: usize = u16::MAX as usize;
+pub(super) const MAX_SLOTS: usize = u16::MAX as usize;
 
 /// Largest number of compared vertices at one position; more are duplicated.
 const MAX_CHAIN: usize = 256;
@@ -26,10 +26,12 @@ pub(crate) struct MaterialSlots {
     pub(crate) entries: Vec<(String, Option<usize>)>,
     /// The first slot of each name.
     places: BTreeMap<String, u16>,
+    /// Number of materials beyond [`MAX_SLOTS`], which have no slot.
+    pub(super) left_out: usize,
 }
 
 impl MaterialSlots {
-    /// The slots of `obj` with `mtl`.
+    /// The slots of `obj` with `mtl`: the first 65,535. What is shown in one of the others is reported, and shown in the first.
     pub(crate) fn from_obj_and_mtl(
         obj: &ObjFile,
         mtl: &MtlFile,
@@ -37,7 +39,7 @@ impl MaterialSlots {
         report: &mut LoadReport,
     ) -> Self {
         let mut slots = Self::default();
-        for (i, material) in mtl.materials.iter().enumerate().take(MAX_SLOTS) {
+        for (i, material) in mtl.materials.iter().enumerate() {
             if slots.find(&material.name).is_some() {
                 report.warn(
                     at.clone(),
@@ -46,11 +48,26 @@ impl MaterialSlots {
                     },
                 );
             }
-            slots.push(&material.name, Some(i));
+            if i < MAX_SLOTS {
+                slots.push(&material.name, Some(i));
+            } else {
+                slots.left_out += 1;
+            }
         }
+        let mut unshown = BTreeSet::new();
         for run in &obj.face_groups {
             let name = run.material.as_deref().unwrap_or("");
-            if slots.find(name).is_none() && slots.entries.len() < MAX_SLOTS {
+            if slots.find(name).is_none() {
+                if slots.entries.len() >= MAX_SLOTS {
+                    if unshown.insert(name) {
+                        let first = &slots.entries[0].0;
+                        let what = format!(
+                            "material {name:?} is beyond the first {MAX_SLOTS}, the most that one file may use; {first:?} is shown"
+                        );
+                        report.warn(at.clone(), WarningKind::Simplified { what });
+                    }
+                    continue;
+                }
                 if run.material.is_some() {
                     report.warn(
                         at.clone(),
@@ -271,6 +288,7 @@ fn box_uv(point: Vec3, normal: Vec3) -> Vec2 {
 #[cfg(test)]
 mod tests {
     use super::*;
+    use crate::obj::file::MtlMaterial;
     use crate::obj::{read_mtl, read_obj};
     use std::fmt::Write as _;
 
@@ -401,6 +419,30 @@ mod tests {
         );
         assert_eq!((mesh.positions[0], mesh.normals[0]), (Vec3::ZERO, Vec3::Y));
         assert_eq!(report.count(|d| *d == WarningKind::DegenerateTriangles), 1);
+    }
+
+    #[test]
+    fn what_is_shown_beyond_the_last_slot_is_reported() {
+        let text = b"v 0 0 0\nusemtl a65534\nf 1 1 1\nusemtl a65536\nf 1 1 1\nusemtl x\nf 1 1 1\n";
+        let obj = read_obj(text, "a.obj", &mut LoadReport::new());
+        let materials = (0..MAX_SLOTS + 2).map(|k| MtlMaterial {
+            name: format!("a{k}"),
+            ..MtlMaterial::default()
+        });
+        let mtl = MtlFile {
+            materials: materials.collect(),
+        };
+        let at = FileLocation::file("a.obj");
+        let mut report = LoadReport::new();
+        let slots = MaterialSlots::from_obj_and_mtl(&obj, &mtl, &at, &mut report);
+        assert_eq!((slots.entries.len(), slots.left_out), (MAX_SLOTS, 2));
+        let shown = obj.face_groups.iter().map(|run| slots.slot_of_group(run));
+        assert_eq!(shown.collect::<Vec<u16>>(), [65_534, 0, 0]);
+        let told = report.to_string();
+        for name in ["\"a65536\" is beyond the first 65535", "\"x\" is beyond"] {
+            assert!(told.contains(name), "{told}");
+        }
+        assert_eq!(report.len(), 2, "{report}");
     }
 
     #[test]

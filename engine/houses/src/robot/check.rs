@@ -173,8 +173,12 @@ fn check_joint(
         let expected = "a joint that moves and follows none";
         return refuse_field(at.field("joint"), expected, format!("{leader:?}"));
     }
-    if !(multiplier.is_finite() && offset.is_finite()) {
-        return refuse_field(at, "finite numbers", format!("{multiplier}, {offset}"));
+    if !(-1e3..=1e3).contains(multiplier) {
+        let found = multiplier.to_string();
+        return refuse_field(at.field("multiplier"), "-1000 to 1000", found);
+    }
+    if !(-1e4..=1e4).contains(offset) {
+        return refuse_field(at.field("offset"), "-10000 to 10000", offset.to_string());
     }
     Ok(())
 }

@@ -39,6 +39,14 @@ pub(crate) const CASES: &[Case] = &[
         },
         &["a.obj", "o: count of things 50001", "50000"],
     ),
+    fails(
+        "65,536 materials",
+        |d| {
+            put(d, "a.mtl", "newmtl a\n".repeat(65_536));
+            put(d, "a.obj", obj_of("a.mtl"))
+        },
+        &["a.obj", "mtllib: count of materials 65536", "65535"],
+    ),
     warns(
         "numbers that are none",
         |d| {

@@ -46,6 +46,34 @@ impl BoxTree {
         self.k_nearest_intersecting(reach, usize::MAX, |_| true)
     }
 
+    /// Calls `visit` with the number of each box that contains `point`, border included, in no particular order.
+    ///
+    /// It takes no memory: for queries that are made often.
+    pub fn for_each_at(&self, point: Vec3, mut visit: impl FnMut(usize)) {
+        if !self.tree.nodes.is_empty() {
+            self.visit_node(0, point, &mut visit);
+        }
+    }
+
+    /// The tree is split in the middle: it is as deep as the logarithm of the number of boxes.
+    fn visit_node(&self, k: usize, point: Vec3, visit: &mut impl FnMut(usize)) {
+        let node = &self.tree.nodes[k];
+        if !node.bounds.contains(point) {
+            return;
+        }
+        let first = node.first as usize;
+        if node.count == 0 {
+            self.visit_node(first, point, visit);
+            self.visit_node(first + 1, point, visit);
+            return;
+        }
+        for index in &self.tree.primitive_order[first..first + node.count as usize] {
+            if self.boxes[*index as usize].contains(point) {
+                visit(*index as usize);
+            }
+        }
+    }
+
     /// Returns the numbers of at most `most` boxes that share a point with `reach` and for which `counts` is true, rising.
     ///
     /// Of more than `most` it returns those about the middle of `reach`: of two branches of the tree the one whose middle
@@ -137,6 +165,23 @@ mod tests {
         }
         assert!(tree.intersecting(&Aabb::EMPTY).is_empty());
         assert!(BoxTree::new(Vec::new()).intersecting(&boxes[0]).is_empty());
+    }
+
+    #[test]
+    fn at_a_point_it_finds_what_looking_at_all_finds() {
+        let mut boxes = cloud(300, 6.0);
+        boxes[7] = Aabb::EMPTY;
+        let tree = BoxTree::new(boxes.clone());
+        let corners = boxes.iter().skip(8).map(|b| b.min);
+        for point in corners.chain(cloud(100, 6.0).iter().map(Aabb::center)) {
+            let mut found = Vec::new();
+            tree.for_each_at(point, |k| found.push(k));
+            found.sort_unstable();
+            let all = boxes.iter().enumerate();
+            let around = all.filter(|(_, b)| b.contains(point)).map(|(k, _)| k);
+            assert_eq!(found, around.collect::<Vec<usize>>());
+        }
+        BoxTree::default().for_each_at(Vec3::ZERO, |_| unreachable!("it has no boxes"));
     }
 
     #[test]

@@ -18,9 +18,12 @@ const SEARCH: PlocSearchDistance = PlocSearchDistance::Low;
 const SEARCH_FROM_DEPTH: usize = 2;
 const REINSERTED: f32 = 0.02;
 const TRAVERSAL_COST: f32 = 3.0;
-/// Longest stretch of boxes along the Morton curve of which no two merge in the first round. Where all are alike, as in a
-/// row or at one place, each round merges one pair, so that n boxes take n² steps and make a tree n deep.
-const MAX_UNMERGED: usize = 4096;
+/// Most steps in stretches of boxes along the Morton curve of which no two merge in the first round. Where all are alike, as
+/// in a row or at one place, each round merges one pair, so that n boxes take n² steps and make a tree n deep. 16 million steps
+/// take less than half a second.
+const MAX_STEPS: usize = 1 << 24;
+/// Length from which a stretch counts; shorter ones take few steps a box.
+const LONG_STRETCH: usize = 256;
 
 /// A tree of good quality (bottom-up clustering, reinsertion, leaves by cost); leaves hold at most [`WIDTH`] boxes.
 ///
@@ -34,7 +37,7 @@ pub(super) fn ploc_tree(boxes: &[Aabb]) -> BinaryBvh {
             self.0
         }
     }
-    if boxes.len() <= WIDTH || longest_unmerged_run(boxes) > MAX_UNMERGED {
+    if boxes.len() <= WIDTH || unmerged_steps(boxes) > MAX_STEPS {
         return median_tree(boxes);
     }
     let primitives: Vec<Primitive> = boxes
@@ -74,12 +77,13 @@ pub(super) fn ploc_tree(boxes: &[Aabb]) -> BinaryBvh {
     }
 }
 
-/// Returns the longest stretch of boxes along the Morton curve of which no two are each other's nearest; 0 for few boxes.
+/// Returns the sum of the squared lengths of long stretches of boxes along the Morton curve of which no two are each other's
+/// nearest; 0 for few boxes.
 ///
 /// # Source
 /// Meister and Bittner, "Parallel Locally-Ordered Clustering" (2018), section 3, with a search distance of 1.
-fn longest_unmerged_run(boxes: &[Aabb]) -> usize {
-    if boxes.len() <= MAX_UNMERGED {
+fn unmerged_steps(boxes: &[Aabb]) -> usize {
+    if boxes.len() * boxes.len() <= MAX_STEPS {
         return 0;
     }
     let mut centers = Aabb::EMPTY;
@@ -97,18 +101,25 @@ fn longest_unmerged_run(boxes: &[Aabb]) -> usize {
         a.union(b).half_area()
     };
     // A pair merges where it costs no more than the pair before, and less than the one after.
-    let (mut longest, mut since, mut falls) = (0, 0, true);
+    let (mut steps, mut since, mut falls) = (0, 0, true);
+    let steps_of = |since: usize| {
+        if since > LONG_STRETCH {
+            since * since
+        } else {
+            0
+        }
+    };
     let mut costs = order.windows(2).map(cost).peekable();
     while let Some(cost) = costs.next() {
         since += 1;
         let rises = costs.peek().is_none_or(|next| cost < *next);
         if falls && rises {
+            steps += steps_of(since);
             since = 0;
         }
-        longest = longest.max(since);
         falls = costs.peek().is_some_and(|next| *next <= cost);
     }
-    longest
+    steps + steps_of(since)
 }
 
 /// Returns the Morton code of a point of the unit cube, 21 bits an axis.
@@ -144,7 +155,7 @@ mod tests {
             .map(|k| at((k * k) as f32 * 0.37, 50.0))
             .collect();
         boxes.extend((0..20_000).map(alike));
-        assert!(longest_unmerged_run(&boxes) > MAX_UNMERGED);
+        assert!(unmerged_steps(&boxes) > MAX_STEPS);
         let tree = ploc_tree(&boxes);
         assert!(depth(&tree, 0) <= 16, "{}", depth(&tree, 0));
         let mut order = tree.primitive_order;
@@ -155,6 +166,12 @@ mod tests {
     #[test]
     fn boxes_at_one_place_make_a_balanced_tree() {
         is_balanced(|_| at(5.0, 0.0));
+    }
+
+    /// As the frames of many doors at one place: each stretch is short, and all of them together take too long.
+    #[test]
+    fn boxes_at_several_places_make_a_balanced_tree() {
+        is_balanced(|k| at(5.0 + (k / 1_000) as f32 * 3.0, 0.0));
     }
 
     #[test]
@@ -169,6 +186,6 @@ mod tests {
         let boxes: Vec<Aabb> = (0..20_000)
             .map(|_| at(100.0 * stream.uniform_f32(), 100.0 * stream.uniform_f32()))
             .collect();
-        assert!(longest_unmerged_run(&boxes) < 100);
+        assert_eq!(unmerged_steps(&boxes), 0);
     }
 }

@@ -2,7 +2,7 @@
 
 use super::check_rooms;
 use super::data::{AgentStart, HouseData, Mobility, Room};
-use crate::articulation::Joint;
+use crate::articulation::{Joint, Mimic};
 use crate::collider::Collider;
 use crate::error::{SceneError, check_range};
 use crate::fixtures::{LightShape, SoundFile};
@@ -426,8 +426,13 @@ fn motor(data: &HouseData, at: &str, id: JointId, joint: &Joint) -> Result<(), S
             "a joint that stands before and follows none",
         );
         check_range(at, "mimic.leader", leads, found, allowed)?;
-        let finite = mimic.multiplier.is_finite() && mimic.offset.is_finite();
-        check_range(at, "mimic", finite, "not finite", "finite numbers")?;
+        let Mimic {
+            multiplier, offset, ..
+        } = *mimic;
+        let ok = (-1e3..=1e3).contains(&multiplier);
+        check_range(at, "mimic.multiplier", ok, multiplier, "-1000 to 1000")?;
+        let ok = (-1e4..=1e4).contains(&offset);
+        check_range(at, "mimic.offset", ok, offset, "-10000 to 10000")?;
     }
     Ok(())
 }

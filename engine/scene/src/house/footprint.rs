@@ -1,37 +1,52 @@
-//! Bounding rectangles of rooms' floors, so that a point is tested against few floors.
+//! Boxes around rooms' floors, so that a point is tested against few of them.
 
 use super::data::Room;
-use glam::Vec2;
+use crate::bounds::Aabb;
+use crate::bvh::BoxTree;
+use crate::ids::{Id, IdVec, RoomId};
+use glam::{Vec2, Vec3};
+
+/// Height below the floor and above the ceiling at which a point still is in the room, m.
+pub(super) const STRAY_M: f32 = 0.3;
 
 /// Rounding tolerance by which [`Room::contains_xz`] may accept a point beyond a corner: m, and a share of the coordinates.
 const MARGIN_M: f32 = 1e-3;
 const MARGIN: f32 = 1e-6;
 
-/// The bounding rectangle of a room's footprint, and the footprint's area.
-#[derive(Debug, Clone, Copy)]
-pub(super) struct FootprintBounds {
-    low: Vec2,
-    high: Vec2,
-    /// m².
-    pub(super) area_m2: f32,
+/// The rooms of a house by where their floors lie.
+#[derive(Debug)]
+pub(super) struct RoomIndex {
+    /// One box a room: around its footprint, between floor and ceiling with [`STRAY_M`] beyond both.
+    boxes: BoxTree,
+    /// The area of each footprint, m².
+    pub(super) area_m2: IdVec<RoomId, f32>,
 }
 
-impl FootprintBounds {
-    pub(super) fn of(room: &Room) -> Self {
-        let corners = room.footprint.iter().flatten();
-        let (low, high) = corners.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), c| {
-            (low.min(*c), high.max(*c))
-        });
-        let margin = |corner: Vec2| Vec2::splat(MARGIN_M) + corner.abs() * MARGIN;
+impl RoomIndex {
+    pub(super) fn new(rooms: &IdVec<RoomId, Room>) -> Self {
         Self {
-            low: low - margin(low),
-            high: high + margin(high),
-            area_m2: room.area_m2(),
+            boxes: BoxTree::new(rooms.iter().map(reach).collect()),
+            area_m2: rooms.iter().map(Room::area_m2).collect(),
         }
     }
 
-    /// Returns whether the point (x, z) may lie over the floor.
-    pub(super) fn may_contain_xz(&self, point: Vec2) -> bool {
-        point.cmpge(self.low).all() && point.cmple(self.high).all()
+    /// Calls `visit` with each room whose floor may lie below `point`, in no particular order.
+    pub(super) fn for_each_near(&self, point: Vec3, mut visit: impl FnMut(RoomId)) {
+        self.boxes
+            .for_each_at(point, |k| visit(RoomId::from_index(k)));
+    }
+}
+
+/// The box in which points of a room lie.
+fn reach(room: &Room) -> Aabb {
+    let corners = room.footprint.iter().flatten();
+    let (low, high) = corners.fold((Vec2::INFINITY, Vec2::NEG_INFINITY), |(low, high), c| {
+        (low.min(*c), high.max(*c))
+    });
+    let margin = |corner: Vec2| Vec2::splat(MARGIN_M) + corner.abs() * MARGIN;
+    let (low, high) = (low - margin(low), high + margin(high));
+    Aabb {
+        min: Vec3::new(low.x, room.floor_y - STRAY_M, low.y),
+        max: Vec3::new(high.x, room.ceiling_y + STRAY_M, high.y),
     }
 }

@@ -19,9 +19,9 @@ pub use shoebox::ShoeboxMaterials;
 
 use crate::error::SceneError;
 use crate::fixtures::Receptacle;
-use crate::ids::{IdVec, ObjectId, RoomId};
+use crate::ids::{IdVec, ObjectId};
 use crate::parallel::Threads;
-use footprint::FootprintBounds;
+use footprint::RoomIndex;
 use std::ops::Deref;
 use std::sync::OnceLock;
 
@@ -35,7 +35,7 @@ pub struct House {
     geometry: OnceLock<Geometry>,
     fingerprint: OnceLock<u64>,
     spaces: OnceLock<IdVec<ObjectId, Vec<u32>>>,
-    footprints: OnceLock<IdVec<RoomId, FootprintBounds>>,
+    room_index: OnceLock<RoomIndex>,
 }
 
 impl House {
@@ -50,7 +50,7 @@ impl House {
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
             spaces: OnceLock::new(),
-            footprints: OnceLock::new(),
+            room_index: OnceLock::new(),
         })
     }
 
@@ -89,9 +89,9 @@ impl House {
         own.map(|k| &self.data.receptacles[*k as usize])
     }
 
-    fn footprint_bounds(&self) -> &IdVec<RoomId, FootprintBounds> {
-        self.footprints
-            .get_or_init(|| self.data.rooms.iter().map(FootprintBounds::of).collect())
+    fn room_index(&self) -> &RoomIndex {
+        self.room_index
+            .get_or_init(|| RoomIndex::new(&self.data.rooms))
     }
 
     /// Returns the plain data, for editing and writing.
@@ -107,7 +107,7 @@ impl Clone for House {
             geometry: OnceLock::new(),
             fingerprint: OnceLock::new(),
             spaces: OnceLock::new(),
-            footprints: OnceLock::new(),
+            room_index: OnceLock::new(),
         }
     }
 }

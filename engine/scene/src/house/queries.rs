@@ -75,23 +75,24 @@ impl House {
     /// Returns the room that contains `point`: over its floor, between floor and ceiling (0.3 m below to 0.3 m above, if no
     /// other storey's room contains it without that), the smallest one where rooms overlap.
     pub fn room_at(&self, point: Vec3) -> Option<RoomId> {
-        let bounds = self.footprint_bounds();
+        let index = self.room_index();
         let point_xz = Vec2::new(point.x, point.z);
-        let holds = |id: RoomId, room: &Room| {
-            point.y >= room.floor_y - 0.3
-                && point.y <= room.ceiling_y + 0.3
-                && bounds[id].may_contain_xz(point_xz)
-                && room.contains_xz(point_xz)
-        };
         let strays = |room: &Room| point.y < room.floor_y - 0.01 || point.y > room.ceiling_y + 0.01;
-        self.rooms
-            .iter_ids()
-            .filter(|(id, room)| holds(*id, room))
-            .min_by(|(i, a), (j, b)| {
-                let by_storey = strays(a).cmp(&strays(b));
-                by_storey.then(bounds[*i].area_m2.total_cmp(&bounds[*j].area_m2))
-            })
-            .map(|(id, _)| id)
+        let mut best: Option<(bool, f32, RoomId)> = None;
+        index.for_each_near(point, |id| {
+            let room = &self.rooms[id];
+            if room.contains_xz(point_xz) {
+                let own = (strays(room), index.area_m2[id], id);
+                let is_better = |(stray, area_m2, other): &(bool, f32, RoomId)| {
+                    let by_area = own.1.total_cmp(area_m2);
+                    own.0.cmp(stray).then(by_area).then(id.cmp(other)).is_lt()
+                };
+                if best.as_ref().is_none_or(is_better) {
+                    best = Some(own);
+                }
+            }
+        });
+        best.map(|(_, _, id)| id)
     }
 
     /// Returns whether a point lies in no room; in a house without rooms: whether it lies beyond all walls. Nothing is

@@ -145,6 +145,12 @@ impl AgentBody {
         let own = parameters(BODY, self).iter().position(refused);
         if let Some(k) = own.or_else(|| all.iter().position(refused)) {
             let (field, parameter) = all[k];
+            if field == "height_m" && parameter.low > parameter.high {
+                // No height would do: the eyes are above the tallest agent.
+                let (eye_m, high) = (self.eye_height_m, parameter.high);
+                let found = format!("{eye_m} (range 0 to {high} m, the height of the tallest agent)");
+                return refuse("eye_height_m", found);
+            }
             let Parameter {
                 value,
                 low,
@@ -186,6 +192,12 @@ mod tests {
             let message = other.check().unwrap_err().to_string();
             assert!(message.contains("agent body"), "{field}: {message}");
         }
+        let mut tall = body;
+        tall.set("height_m", 3.5);
+        tall.set("eye_height_m", 3.4);
+        let message = tall.check().unwrap_err().to_string();
+        let told = "eye_height_m is 3.4 (range 0 to 3 m, the height of the tallest agent)";
+        assert!(message.contains(told), "{message}");
         let mut flat = body;
         flat.set("height_m", 0.0);
         let message = flat.check().unwrap_err().to_string();

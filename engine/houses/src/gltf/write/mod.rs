@@ -12,7 +12,7 @@ pub(crate) use meshes::MeshAccessors;
 
 use std::path::Path;
 
-use dwell_scene::{House, HouseData, Id, LevelId, Mobility, RoomId};
+use dwell_scene::{House, HouseData, Id, LevelId, Mobility, RoomId, interrupt};
 use glam::Affine3A;
 use serde_json::{Value, json};
 
@@ -110,6 +110,7 @@ pub(crate) fn encode(house: &HouseData, storage: AssetStorage) -> Result<Written
         .meshes
         .iter_ids()
         .map(|(id, mesh)| {
+            interrupt::unwind_if_cancelled();
             let apart = storage == AssetStorage::Shared && !of_building[id.index()];
             binary.with_buffer("object", apart, |binary| meshes::write_mesh(binary, mesh))
         })
@@ -118,6 +119,7 @@ pub(crate) fn encode(house: &HouseData, storage: AssetStorage) -> Result<Written
         .textures
         .iter()
         .map(|texture| {
+            interrupt::unwind_if_cancelled();
             let bytes = encode_png(texture)?;
             let mut image = json!({"mimeType": "image/png", "name": texture.name});
             match storage {
@@ -213,15 +215,18 @@ impl<'a> NodeTreeBuilder<'a> {
             self.of_room.push(id);
         }
         for piece in &house.structure {
+            interrupt::unwind_if_cancelled();
             let mesh = self.shapes.mesh_index(piece.mesh, &piece.materials);
             let node = mesh_node(&piece.name, mesh, None, &extras::structure(piece));
             self.add(node, Some(self.parent_node(piece.level, piece.room)));
         }
         for (id, object) in house.objects.iter_ids() {
+            interrupt::unwind_if_cancelled();
             let home = self.parent_node(object.level, object.room);
             let about = extras::object(house, id, object);
             let node = self.add(json!({"name": object.name, "extras": about}), Some(home));
             for part in object.parts().map(|part| &house.parts[part]) {
+                interrupt::unwind_if_cancelled();
                 let name = if object.part_count == 1 {
                     object.name.clone()
                 } else {

@@ -287,6 +287,16 @@ fn bad_robots_are_refused_with_file_node_and_field() {
             vec!["mimic.joint", "none"],
         ),
         (
+            r#"<mimic joint="left_slide"/>"#,
+            r#"<mimic joint="left_slide" multiplier="1e38"/>"#,
+            vec!["mimic.multiplier", "-1000 to 1000"],
+        ),
+        (
+            r#"<mimic joint="left_slide"/>"#,
+            r#"<mimic joint="left_slide" offset="-1e38"/>"#,
+            vec!["mimic.offset", "-10000 to 10000"],
+        ),
+        (
             r#"izz="0.001""#,
             r#"izz="-0.001""#,
             vec!["link[upper].inertial.inertia", "positive"],
