@@ -251,6 +251,11 @@ def test_errors_within_a_factory_of_parts_stay_as_they_are() -> None:
             {"rgb": {"width": 4}, "right": {"kind": "rgb", "width": 0}},
             "sensors.right: camera: width is 0; allowed is 1 to 16384 pixels",
         ),
+        (
+            {"rgb": {"width": 2**32}},
+            "sensors.rgb: width is 4294967296: found integer `4294967296`, expected a whole number "
+            "from 0 to 4294967295",
+        ),
         ({"gps": {}, "rgb": 3}, "sensors.rgb: 3: found integer `3`, expected values by name"),
         (["gps", "rbg"], 'no sensor "rbg"; there are'),
         ([], "sensors is empty; expected at least one sensor, as ['gps']"),

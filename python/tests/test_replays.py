@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import dwell
-from dwell import cli
+from dwell import cli, replays
 from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
 from dwell.sounds import read_wav
 
@@ -382,3 +382,14 @@ def test_listening_changes_a_recording_only_where_no_ears_were_open(tmp_path: Pa
             moment.world.listen(100)
         assert same == [True, is_heard, is_heard, is_heard]
         assert replay.first_difference() is None
+
+
+def test_the_longest_replay_has_one_hash_more_than_actions(file: Path) -> None:
+    replay = dwell.Replay.read(file)
+    most = replays.MAX_STEPS
+    longest = dataclasses.replace(replay, hashes=("0" * 16,) * (most + 1))
+    with pytest.raises(dwell.MeasuredDataError, match=f"and {most + 1} hashes; expected at most"):
+        longest.check()
+    longer = dataclasses.replace(replay, hashes=("0" * 16,) * (most + 2))
+    with pytest.raises(dwell.MeasuredDataError, match=f"has more than {most + 1} elements"):
+        longer.check()

@@ -53,15 +53,7 @@ pub fn plain_parse_error(error: impl Display) -> String {
         told.push_str(before);
         let (words, length) = type_in_words(after).unwrap_or(("", 0));
         told.push_str(words);
-        let beyond = limits_passed(before, &after[..length]);
-        if let Some((low, high)) = beyond {
-            let low = if low < 0 {
-                format!(" from {low}")
-            } else {
-                String::new()
-            };
-            told.push_str(&format!("{low} to {high}"));
-        }
+        told.push_str(&limits_passed(before, &after[..length]).unwrap_or_default());
         rest = &after[length..];
     }
     told + rest
@@ -69,11 +61,15 @@ pub fn plain_parse_error(error: impl Display) -> String {
 
 /// The limits of the type called `expected`, where the text before it tells a number beyond the largest or below a negative smallest
 /// one: that a number is not negative is in the type's words.
-fn limits_passed(before: &str, expected: &str) -> Option<(i128, i128)> {
+fn limits_passed(before: &str, expected: &str) -> Option<String> {
     let (_, found) = before.rsplit_once("integer `")?;
     let number: i128 = found.split('`').next()?.parse().ok()?;
     let (_, low, high) = LIMITS.iter().find(|(name, ..)| *name == expected)?;
-    (number > *high || number < (*low).min(-1)).then_some((*low, *high))
+    if *low < 0 {
+        let passed = number < *low || number > *high;
+        return passed.then(|| format!(" from {low} to {high}"));
+    }
+    (number > *high).then(|| format!(" to {high}"))
 }
 
 /// The words for the beginning of a text, and its length.

@@ -5,7 +5,7 @@
 
 use crate::interrupt::{self, CancelPoller};
 use std::fs::{self, File, Metadata, OpenOptions, TryLockError};
-use std::io::{self, Read as _, Write as _};
+use std::io::{self, Read as _};
 use std::path::{Path, PathBuf};
 
 /// Deepest nesting of JSON, `serde_json`'s own limit.
@@ -392,6 +392,34 @@ mod tests {
         write(&link, b"new").unwrap();
         assert!(fs::symlink_metadata(&link).unwrap().is_symlink());
         assert_eq!(read(&path, 10).unwrap(), b"new");
+    }
+
+    #[test]
+    fn a_file_stays_as_it_was_where_its_writing_is_stopped() {
+        let folder = tempfile::tempdir().unwrap();
+        let path = folder.path().join("a");
+        write(&path, b"old").unwrap();
+        let stopped = interrupt::interruptible(
+            || true,
+            || {
+                std::thread::sleep(2 * interrupt::INTERVAL);
+                write(&path, b"new")
+            },
+        );
+        assert!(stopped.is_err());
+        assert_eq!(read(&path, 3).unwrap(), b"old");
+        assert_eq!(fs::read_dir(folder.path()).unwrap().count(), 1);
+    }
+
+    #[test]
+    fn what_passes_a_stream_that_can_be_stopped_stays_the_same() {
+        let bytes: Vec<u8> = (0..PIECE_BYTES / 4).map(|k| k as u8).collect();
+        let mut written = CancellableStream::new(Vec::new());
+        io::copy(&mut CancellableStream::new(bytes.as_slice()), &mut written).unwrap();
+        assert!(written.into_inner() == bytes);
+        let mut pieces = Vec::new();
+        write_in_pieces(&mut pieces, &bytes.repeat(9)).unwrap();
+        assert!(pieces == bytes.repeat(9));
     }
 
     #[test]

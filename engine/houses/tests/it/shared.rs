@@ -9,7 +9,7 @@ use std::path::Path;
 
 use dwell_houses::generate::{HouseSpec, generate};
 use dwell_houses::{HousesError, WarningKind, native, open, suncg, writer};
-use dwell_scene::House;
+use dwell_scene::{House, ShoeboxMaterials};
 
 fn homes() -> Vec<(String, House)> {
     // One style: what stands in two of them is the same.
@@ -74,6 +74,34 @@ fn native_houses_share_meshes_and_textures_and_come_back_exactly() {
         native::write_into(&house, &root, &name).unwrap();
     }
     assert!(files(&root) == together);
+}
+
+/// What a link in a house's place leads to is somebody else's.
+#[test]
+fn a_link_below_a_folder_of_houses_is_not_followed() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("many");
+    let house = House::shoebox([4.0, 2.5, 3.0], &ShoeboxMaterials::default()).unwrap();
+    let mine = folder.path().join("mine.dwell");
+    native::write(&house, &mine).unwrap();
+    let before = files(&mine);
+    std::fs::create_dir_all(root.join("house")).unwrap();
+    for ending in ["dwell", "glb"] {
+        let link = root.join(format!("house/a.{ending}"));
+        std::os::unix::fs::symlink(&mine, &link).unwrap();
+        let write_into = writer(ending).unwrap().write_into;
+        let told = write_into(&house, &root, "a").unwrap_err().to_string();
+        let place = format!("house/a.{ending}");
+        assert!(
+            told.contains(&place) && told.contains("a link stands there"),
+            "{told}"
+        );
+        assert!(link.is_symlink());
+    }
+    assert!(files(&mine) == before);
+    // A path that the caller states is followed.
+    native::write(&house, &root.join("house/a.dwell")).unwrap();
+    assert!(root.join("house/a.dwell").is_symlink());
 }
 
 #[test]

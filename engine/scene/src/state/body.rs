@@ -148,7 +148,8 @@ impl AgentBody {
             if field == "height_m" && parameter.low > parameter.high {
                 // No height would do: the eyes are above the tallest agent.
                 let (eye_m, high) = (self.eye_height_m, parameter.high);
-                let found = format!("{eye_m} (range 0 to {high} m, the height of the tallest agent)");
+                let found =
+                    format!("{eye_m} (range 0 to {high} m, the height of the tallest agent)");
                 return refuse("eye_height_m", found);
             }
             let Parameter {

@@ -380,3 +380,19 @@ fn errors_name_what_was_found_and_what_is_possible() {
         "{told}"
     );
 }
+
+#[test]
+fn what_is_added_under_a_name_that_is_none_is_told_what_a_name_is() {
+    let house = studio();
+    for (name, found) in [
+        ("", "\"\""),
+        ("  ", "\"  \""),
+        ("a\u{1b}b", "\"a\\u{1b}b\""),
+    ] {
+        let thing = json!({"box": {"size_m": [1, 1, 1]}});
+        let list = json!([{"add": {"what": thing, "name": name, "place": {"at": [1, 0, 1]}}}]);
+        let told = refused(&house, list);
+        let said = format!("add.name: found {found}; possible: a name, without control characters");
+        assert!(told.contains(&said), "{told}");
+    }
+}
