@@ -10,7 +10,7 @@ import contextlib
 import csv
 import re
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -61,6 +61,8 @@ class BundleDraft:
         self._clock = self._name = ""
         #: What becomes of gaps, for who can have it otherwise.
         self.gap_hint = ""
+        #: Makes a fault with hints for the map of one with hints for the bundle.
+        self.hints: Callable[[str], str] = str
 
     def measured(self, table: str, clock: str, episode: str) -> None:
         """Says which table holds the samples, and its columns of times and of episodes."""
@@ -89,7 +91,7 @@ class BundleDraft:
 
     def told(self, fault: str, out: Path) -> str:
         """A fault of the bundle as one of the user's files."""
-        told = self._told(fault, out)
+        told = self._told(self.hints(fault), out)
         is_gap = "missing before it" in told or "fill the gap in" in told
         return told + self.gap_hint if is_gap else told
 
