@@ -31,7 +31,7 @@ def driven(rows: Rows) -> None:
             x += 0.5 * (left + right) * 0.042 * math.cos(heading + 0.5 * turn)
             y += 0.5 * (left + right) * 0.042 * math.sin(heading + 0.5 * turn)
             heading += turn
-            seen = [x, y, heading] + rng.normal(0.0, [0.001, 0.001, 0.005])
+            seen = rng.normal([x, y, heading], [0.001, 0.001, 0.005])
             ticks = [round(rad / 2 / math.pi * 2796.8) for rad in (left, right)]
             rows.append([f"e{drive}", k / 20, *seen.tolist(), *ticks])
 

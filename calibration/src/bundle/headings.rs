@@ -300,9 +300,9 @@ impl HeadingEvidence {
         [self.direction_misfit(reading), self.turn_misfit(reading)].map(Option::unwrap_or_default)
     }
 
-    /// Returns whether the way goes where headings and wheels say.
+    /// Returns whether the way goes where headings and wheels say, however far.
     pub(super) fn is_along_headings(&self) -> bool {
-        self.misfits(ColumnReading::AS_SAID)[0] <= RIGHT[0]
+        self.misfits(ColumnReading::AS_SAID)[0] <= EXPLAINED
     }
 
     /// The readings that explain the drives where they are not as said; those with the fewest slips of those that do it
