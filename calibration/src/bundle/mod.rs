@@ -19,6 +19,7 @@ pub mod file;
 
 mod arrivals;
 mod check;
+mod headings;
 mod jumps;
 mod limits;
 mod odometry;

@@ -2,6 +2,7 @@
 
 use super::check;
 use super::file::{DriveRow, MeasurementDescription, WheeledBaseManifest};
+use super::headings::HeadingEvidence;
 use super::read::{episode_index, for_each_row};
 use super::{MeasuredEpisode, unit_checks};
 use crate::error::CalibrationError;
@@ -17,9 +18,6 @@ const TELLING_WAY_M: f64 = 1.0;
 const WAYS: [f64; 2] = [0.55, 1.8];
 /// Such ratios, of a diameter for a radius and of a radius for a diameter, within a tenth.
 const DIAMETER_WAYS: [f64; 2] = [2.0, 0.5];
-
-/// Sum of squared turns in a sample by the wheels above which their sense is compared with the tracker's, rad2.
-const TELLING_TURN_RAD2: f64 = 0.01;
 
 type OdometryCheck = Result<(), CalibrationError>;
 
@@ -65,6 +63,7 @@ pub(super) fn check_drives(
         });
     };
     let mut ways = WheelAndTrackerPaths::default();
+    let mut headings = HeadingEvidence::default();
     for episode in episodes {
         let at = format!("{name}, episode {}", episode.name);
         let rows = &episode.drive;
@@ -80,39 +79,29 @@ pub(super) fn check_drives(
         unit_checks::check_even_sampling(&at, &times, base.rate_hz)?;
         rows.windows(2).for_each(|pair| ways.add(pair, base));
         ways.add_end_difference(rows, base);
+        headings.add(rows, base);
     }
-    ways.check_agreement(&format!("{name}/drive.csv"))
+    let at = format!("{name}/drive.csv");
+    headings.check(&at)?;
+    ways.check_agreement(&at, headings.is_along_headings())
 }
 
-/// Lengths and turns of robots' paths, by the wheels and by the tracker, m and rad.
+/// Lengths of robots' paths, by the wheels and by the tracker, m.
 #[derive(Default)]
 struct WheelAndTrackerPaths {
     wheels_m: f64,
     /// Along the heading, so that a tracker's noise does not add up.
     tracker_m: f64,
-    /// The same, if headings were degrees.
-    by_degrees_m: f64,
     /// By the wheels, if the turns were counted since the start.
     since_start_m: f64,
-    /// Turn by the wheels in a sample, squared, and times that by the tracker.
-    turned: f64,
-    turned_both: f64,
 }
 
 impl WheelAndTrackerPaths {
     fn add(&mut self, pair: &[DriveRow], base: &WheeledBaseManifest) {
         let (before, now) = (&pair[0], &pair[1]);
-        let along = |heading: f64| {
-            (now.x - before.x) * libm::cos(heading) + (now.y - before.y) * libm::sin(heading)
-        };
-        self.tracker_m += along(now.heading);
-        self.by_degrees_m += along(now.heading / unit_checks::DEGREES);
+        self.tracker_m += (now.x - before.x) * libm::cos(now.heading)
+            + (now.y - before.y) * libm::sin(now.heading);
         self.wheels_m += 0.5 * base.wheel_radius_m * (now.left_rad + now.right_rad);
-        let by_wheels = base.wheel_radius_m * (now.right_rad - now.left_rad) / base.wheel_base_m;
-        self.turned += by_wheels * by_wheels;
-        // A heading may begin again after a turn.
-        let turn = now.heading - before.heading;
-        self.turned_both += by_wheels * libm::atan2(libm::sin(turn), libm::cos(turn));
     }
 
     fn add_end_difference(&mut self, rows: &[DriveRow], base: &WheeledBaseManifest) {
@@ -121,56 +110,31 @@ impl WheelAndTrackerPaths {
         self.since_start_m += 0.5 * base.wheel_radius_m * (ends[1] - ends[0]);
     }
 
-    fn check_agreement(&self, at: &str) -> OdometryCheck {
+    /// `is_along`: whether ways along the headings are the tracker's.
+    fn check_agreement(&self, at: &str, is_along: bool) -> OdometryCheck {
         let is_right = |ratio: f64| (WAYS[0]..=WAYS[1]).contains(&ratio);
         let ratio = self.wheels_m / self.tracker_m;
-        if self.wheels_m.abs() > TELLING_WAY_M && !is_right(ratio) {
-            let hint = if is_right(self.wheels_m / self.by_degrees_m) {
-                unit_checks::degrees_hint("headings", unit_checks::DEGREES)
-            } else if is_right(self.since_start_m / self.tracker_m) {
-                Some("are turns of the wheels counted since the start? They are meant since the sample before".into())
-            } else if is_right(-ratio) {
-                Some(
-                    "do wheels count backwards, or do headings point to the back? Turn the sign"
-                        .into(),
-                )
-            } else if DIAMETER_WAYS
-                .iter()
-                .any(|way| (ratio / way - 1.0).abs() <= 0.1)
-            {
-                Some("is wheel_radius_m the diameter, or half the radius?".into())
-            } else {
-                unit_checks::length_unit_hint("positions", 1.0 / ratio.abs())
-            };
-            let hint = hint.unwrap_or_else(|| "check units, signs and wheel_radius_m".into());
-            return Err(CalibrationError::field(
-                at,
-                "the way by the wheels over the tracker's",
-                format!("{ratio:.3}"),
-                format!("{} to {}; {hint}", WAYS[0], WAYS[1]),
-            ));
-        }
-        let turns = self.turned_both / self.turned;
-        if self.turned < TELLING_TURN_RAD2 {
+        if self.wheels_m.abs() <= TELLING_WAY_M || is_right(ratio) {
             return Ok(());
         }
-        if let Some(hint) = unit_checks::degrees_hint("headings", turns) {
-            let field = "the turns of the heading over those by the wheels";
-            return Err(CalibrationError::field(
-                at,
-                field,
-                format!("{turns:.1}"),
-                format!("about 1; {hint}"),
-            ));
-        }
-        if turns < -WAYS[0] {
-            return Err(CalibrationError::field(
-                at,
-                "the turns of the heading over those by the wheels",
-                format!("{turns:.2}"),
-                "about 1; are left and right exchanged, or do headings grow clockwise (of a compass pi/2 - heading is meant)?",
-            ));
-        }
-        Ok(())
+        let hint = if !is_along {
+            None
+        } else if is_right(self.since_start_m / self.tracker_m) {
+            Some("are turns of the wheels counted since the start? They are meant since the sample before".into())
+        } else if DIAMETER_WAYS
+            .iter()
+            .any(|way| (ratio / way - 1.0).abs() <= 0.1)
+        {
+            Some("is wheel_radius_m the diameter, or half the radius?".into())
+        } else {
+            unit_checks::length_unit_hint("positions", 1.0 / ratio.abs())
+        };
+        let hint = hint.unwrap_or_else(|| "check units, signs, headings and wheel_radius_m".into());
+        Err(CalibrationError::field(
+            at,
+            "the way by the wheels over the tracker's",
+            format!("{ratio:.3}"),
+            format!("{} to {}; {hint}", WAYS[0], WAYS[1]),
+        ))
     }
 }

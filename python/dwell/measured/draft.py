@@ -10,7 +10,7 @@ import contextlib
 import csv
 import re
 from array import array
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from dataclasses import dataclass, field
 from pathlib import Path
 from typing import Protocol
@@ -63,6 +63,8 @@ class BundleDraft:
         self.gap_hint = ""
         #: What becomes of episodes of too few rows, likewise.
         self.short_hint = ""
+        #: Makes a fault with hints for the map of one with hints for the bundle.
+        self.hints: Callable[[str], str] = str
 
     def measured(self, table: str, clock: str, episode: str) -> None:
         """Says which table holds the samples, and its columns of times and of episodes."""
@@ -92,7 +94,7 @@ class BundleDraft:
     def told(self, fault: str, out: Path) -> str:
         """A fault of the bundle as one of the user's files."""
         # Its rows are those of the user's table.
-        told = re.sub(r"\b(rows?) of [a-z]+\.csv\b", r"\1", self._told(fault, out))
+        told = re.sub(r"\b(rows?) of [a-z]+\.csv\b", r"\1", self._told(self.hints(fault), out))
         if re.search(r": [0-9]+ rows, at least ", told):
             return told + self.short_hint
         is_gap = "missing before it" in told or "fill the gap in" in told

@@ -58,6 +58,10 @@ class Unit:
         """A number of the column in SI."""
         return (value - self.zero) * self.factor
 
+    def read_as(self, other: Unit) -> Unit:
+        """The unit of numbers whose values by this one are told in another."""
+        return Unit(other.factor * self.factor, self.zero + other.zero / self.factor)
+
 
 class ColumnUnits:
     """The units of a part of a map, by column."""

@@ -20,7 +20,7 @@ const RINGING_S: f64 = 1.2e-3;
 /// Level to which it has fallen by then, dB.
 const RINGING_DB: f64 = -9.0;
 /// The longest lag, s.
-const MOST_LAG_S: f64 = 0.025;
+pub(super) const MOST_LAG_S: f64 = 0.025;
 /// Arrivals are matched as long as no more than [`DENSE_COUNT`] are predicted within this time, s.
 const DENSE_S: f64 = 4e-3;
 const DENSE_COUNT: usize = 20;
@@ -39,7 +39,12 @@ const WRONG_PICK_S: f64 = 4e-4;
 
 /// The standard deviation of the difference of a time from its prediction, s, for places that are known so well, m.
 pub(super) fn time_sd_s(position_sd_m: Option<f64>, speed_m_s: f64) -> f64 {
-    PICK_SD_S.hypot(WAY_SDS * position_sd_m.unwrap_or(POSITION_SD_M) / speed_m_s)
+    PICK_SD_S.hypot(place_sd_s(position_sd_m, speed_m_s))
+}
+
+/// The part of [`time_sd_s`] that places make, s.
+pub(super) fn place_sd_s(position_sd_m: Option<f64>, speed_m_s: f64) -> f64 {
+    WAY_SDS * position_sd_m.unwrap_or(POSITION_SD_M) / speed_m_s
 }
 
 /// Returns whether echoes of this standard deviation (s) can be told apart.

@@ -5,6 +5,7 @@
 
 mod arrivals;
 mod causes;
+mod chance;
 mod data;
 mod levels;
 mod scan;
@@ -21,6 +22,7 @@ use crate::error::CalibrationError;
 use crate::options::CalibrationOptions;
 use arrivals::PickedArrivals;
 use causes::ABSORPTION_STEP;
+use chance::{EchoMismatch, chance_threshold};
 use data::{EpisodeLayout, MS, channels, check_rates, episode_data, layout};
 use dwell_acoustics::bands::NOMINAL_CENTRES_HZ;
 use dwell_acoustics::{AcousticConfig, Air};
@@ -39,7 +41,7 @@ const OFFSET_STEP_MS: f64 = 0.01;
 /// Mean square of the mismatch of echoes, in standard deviations, above which they come from elsewhere.
 const FOREIGN_ECHOES: f64 = 1.6;
 /// Echoes below which their mean square says nothing.
-const FEWEST_ECHOES: usize = 20;
+const FEWEST_ECHOES: f64 = 20.0;
 /// Sample rate where nothing was sampled, Hz.
 const NO_RATE_HZ: u32 = 16_000;
 
@@ -56,8 +58,9 @@ pub(crate) struct RoomExperiment {
     /// The bands that are compared, by their position in the engine's.
     bands: std::ops::Range<usize>,
     times: ResponseTimeOrigin,
-    /// Standard deviation of a time, s.
+    /// Standard deviation of a time, s, and the part of it that places make.
     time_sd_s: f64,
+    place_sd_s: f64,
     /// The cause of each parameter, and its position in it.
     owners: Vec<(usize, usize)>,
 }
@@ -183,6 +186,7 @@ impl RoomExperiment {
             bands,
             times,
             time_sd_s,
+            place_sd_s: arrivals::place_sd_s(position_sd_m, speed_m_s),
             owners,
         })
     }
@@ -470,15 +474,14 @@ impl Experiment for RoomExperiment {
             let offset_s = self.offset_s(&at, &simulated, stretch);
             simulations.push((*episode, simulated, stretch, offset_s));
         }
-        let (mut sum, mut count) = (0.0, 0_usize);
+        let (mut sum, mut count) = (0.0, 0.0);
         let mut recordings = Vec::new();
         for (episode, simulated, stretch, offset_s) in &simulations {
             for (one, picked) in simulated.iter().zip(&self.layouts[*episode].picked) {
                 let predicted = predicted_s(one, *stretch, *offset_s);
-                for echo in &picked.echoes {
-                    sum += (arrivals::mismatch_s(echo.t_s, &predicted) / self.time_sd_s).powi(2);
-                    count += 1;
-                }
+                let found = EchoMismatch::of(picked, &predicted, self.time_sd_s, || 0.0);
+                sum += found.sum;
+                count += found.count;
                 let direct_s = one.recorded_time_s(one.direct_s, *stretch) + offset_s;
                 recordings.push((picked, predicted.iter().map(|t| t - direct_s).collect()));
             }
@@ -489,9 +492,25 @@ impl Experiment for RoomExperiment {
                 threshold: 1.0,
             }));
         }
-        Ok((count >= FEWEST_ECHOES).then(|| StructureTest {
-            ratio: sum / count as f64,
-            threshold: FOREIGN_ECHOES,
-        }))
+        if count < FEWEST_ECHOES {
+            return Ok(None);
+        }
+        let ratio = sum / count;
+        let mut threshold = FOREIGN_ECHOES;
+        if ratio > threshold {
+            // Peaks of scattered sound are no echoes from elsewhere.
+            let all = simulations
+                .iter()
+                .flat_map(|(_, simulated, ..)| simulated.iter());
+            let all: Vec<&SimulatedResponse> = all.collect();
+            let by_chance = chance_threshold(
+                &self.simulator,
+                &all,
+                (self.time_sd_s, self.place_sd_s),
+                self.simulator.key().child("scattered"),
+            );
+            threshold = threshold.max(by_chance);
+        }
+        Ok(Some(StructureTest { ratio, threshold }))
     }
 }

@@ -1,5 +1,6 @@
 //! Simulated responses of a room, and their memory.
 
+use super::arrivals::MOST_LAG_S;
 use super::levels::{self, FilterRingingModel};
 use super::setup::RoomSetup;
 use crate::bundle::MeasuredResponse;
@@ -87,6 +88,27 @@ impl RoomSimulator {
         &self.stage
     }
 
+    /// What all that is drawn depends on.
+    pub(super) fn key(&self) -> RandomKey {
+        RandomKey::root(self.seed).child("room")
+    }
+
+    /// A response as a microphone would record it, as far as echoes are looked for, with the random arrivals of a key.
+    pub(super) fn pressure(&self, one: &SimulatedResponse, key: RandomKey) -> MeasuredResponse {
+        let mut echogram = one.echogram.clone();
+        let end_s = one.direct_s + MOST_LAG_S + 0.01;
+        let bins = (end_s / echogram.tail.bin_s).ceil() as usize;
+        echogram.tail.bins.truncate(bins);
+        let speed_m_s = echogram.speed_m_s;
+        echogram
+            .paths
+            .retain(|path| path.length_m < end_s * speed_m_s);
+        let receiver = Receiver::omni(Vec3::ZERO);
+        let scene = &self.stage.scene;
+        let response = scene.impulse_response_from_echogram(echogram, &receiver, key);
+        plain_response(response.samples, self.config.rate_hz)
+    }
+
     /// The responses of an episode.
     pub(super) fn responses(
         &self,
@@ -155,10 +177,7 @@ impl RoomSimulator {
         let mut found = Vec::new();
         for (k, (source, receiver)) in self.pairs[episode].iter().enumerate() {
             // The same rays whatever the parameters are, so that differences are smooth.
-            let key = RandomKey::root(self.seed)
-                .child("room")
-                .child(episode as u64)
-                .child(k as u64);
+            let key = self.key().child(episode as u64).child(k as u64);
             let source = SoundSourcePose::omni(*source + stage.shift);
             let stated = Receiver::omni(*receiver + stage.shift);
             let placed = scene.true_receiver(&stated);
