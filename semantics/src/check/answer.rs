@@ -58,13 +58,25 @@ impl Checker<'_> {
                     Some(kind) => self.extension(kind).fits.clone(),
                     None => self.scene.house().objects.ids().map(Term::Object).collect(),
                 };
+                // "What is on the table?" of several tables has no answer unless something is on all of them.
+                let mut open = None;
                 let fits = |term: &Term| {
                     self.hole.set(Some(*term));
-                    self.judge(clause).truth.is_true()
+                    let truth = self.judge(clause).truth;
+                    if let Truth::Undecided(
+                        reason @ (UndecidedReason::SeveralFit | UndecidedReason::NoViewer),
+                    ) = truth
+                    {
+                        open.get_or_insert(reason);
+                    }
+                    truth.is_true()
                 };
-                let things = candidates.into_iter().filter(fits).collect();
+                let things: Vec<Term> = candidates.into_iter().filter(fits).collect();
                 self.hole.set(None);
-                QuestionAnswer::Things(things)
+                match open {
+                    Some(reason) if things.is_empty() => QuestionAnswer::None(reason),
+                    _ => QuestionAnswer::Things(things),
+                }
             }
             Question::HowFar { subject, from } => match self.distance_between(subject, from) {
                 Ok(metres) => QuestionAnswer::Number(metres as usize),

@@ -1,9 +1,8 @@
 //! Pronouns and their antecedents.
 
 use super::mention::{
-    exactly_one_as_definite, is_any_room, is_indefinite_singular, is_singular, may_be_one,
-    meets_selectional_restriction, object_with_predicate, subject_with_predicate,
-    subject_without_predicate, topic_of,
+    exactly_one_as_definite, is_any_room, is_singular, object_with_predicate,
+    subject_with_predicate, subject_without_predicate, topic_of,
 };
 use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
 use super::{

@@ -435,6 +435,12 @@ fn questions_get_what_was_counted() {
         .map(|id| Term::Object(*id))
         .collect();
     assert_eq!(found, expected);
+    // It has several tables, and nothing is on all of them.
+    assert!(nouns["table"].len() > 1);
+    assert_eq!(
+        checker.answer(&question("What is on the table?")),
+        QuestionAnswer::None(UndecidedReason::SeveralFit)
+    );
     let QuestionAnswer::Truth(verdict) = checker.answer(&question("Is there a bed?")) else {
         panic!("a truth value");
     };
