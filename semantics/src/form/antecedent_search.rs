@@ -146,11 +146,13 @@ impl Resolver {
             .iter()
             .filter(|mention| mention.unit == self.unit)
             .filter_map(|mention| match &mention.phrase {
-                Phrase::Described(own) => own
-                    .modifiers
-                    .iter()
-                    .any(|modifier| modifier.arguments.contains(&Phrase::NamedBefore))
-                    .then(|| own.noun.clone()),
+                // "The floor behind it" is not behind a floor.
+                Phrase::Described(own) => (matches!(own.noun, Noun::Structure(_))
+                    || own
+                        .modifiers
+                        .iter()
+                        .any(|modifier| modifier.arguments.contains(&Phrase::NamedBefore)))
+                .then(|| own.noun.clone()),
                 _ => None,
             })
             .collect();
