@@ -25,7 +25,7 @@ fn puts_into_itself(step: &RequestStep) -> bool {
                 object.clone().with_quantifier(to.quantifier) == **to
                     && object.quantifier != Quantifier::Some
             }
-            _ => object == to,
+            _ => false,
         },
         RequestStep::If {
             then, otherwise, ..

@@ -153,8 +153,7 @@ fn a_json_with_the_look_of_a_plan_is_told_which_formats_there_are() {
         fs::write(&file, text).unwrap();
         open(&file.to_string_lossy()).map(|(house, _)| house)
     };
-    let building =
-        r#""building": {"storeys": [{"rooms": [{"outline": [[0,0],[4,0],[4,3],[0,3]]}]}]}"#;
+    let building = r#""building": {"storeys": [{"rooms": [{"name": "study", "outline": [[0,0],[4,0],[4,3],[0,3]]}]}]}"#;
     for (text, found) in [
         (
             format!(r#"{{"format": "dwel-plan", {building}}}"#),
