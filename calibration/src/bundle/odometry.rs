@@ -88,6 +88,7 @@ pub(super) fn check_drives(
 
 /// Lengths of robots' paths, by the wheels and by the tracker, m.
 #[derive(Default)]
+#[expect(clippy::struct_field_names, reason = "the unit")]
 struct WheelAndTrackerPaths {
     wheels_m: f64,
     /// Along the heading, so that a tracker's noise does not add up.

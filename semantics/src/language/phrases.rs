@@ -99,7 +99,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("every_piece", [noun]) => quantified_piece(Quantifier::Every, noun, None),
         ("every_piece_of", [noun, place]) => quantified_piece(Quantifier::Every, noun, Some(place)),
         ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
-        ("closer_one", [noun, reference]) => {
+        ("closer_one" | "whichever_closer" | "i_whichever_closer", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
             Some(questions::with_selection(nominal(noun)?, "closest_to", reference).into())
         }
@@ -128,9 +128,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let person = Noun::Object("person".to_owned());
             Some(Description::new(Quantifier::No, person).into())
         }
-        ("me", []) => Some(Phrase::Speaker),
+        ("me" | "i_me", []) => Some(Phrase::Speaker),
         ("at_most_one", [noun]) => of(Quantifier::AtMost(1), noun),
-        ("more_than_one", [noun]) => of(Quantifier::AtLeast(2), noun),
         ("at_least_one", [noun]) => of(Quantifier::AtLeast(1), noun),
         ("at_least" | "i_at_least", [count, noun]) => of(Quantifier::AtLeast(number(count)?), noun),
         ("i_the_that" | "i_the_that_verb", [noun, relation, other]) => {
@@ -151,7 +150,6 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             "belongs_to".to_owned(),
             phrase(source)?,
         ),
-        // "Close its door": the door of it.
         ("its" | "i_its", [noun]) => that(
             Quantifier::The,
             noun,
@@ -263,15 +261,14 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             function,
         )),
         ("np_nothing" | "np_something", [inner]) => indefinite_pronoun(inner).map(Phrase::from),
-        ("at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural", [noun])
+        (
+            "at_least_two" | "i_at_least_two" | "bare_plural" | "i_bare_plural" | "more_than_one",
+            [noun],
+        )
         | ("gathering_of", [_, noun]) => of(Quantifier::AtLeast(2), noun),
         ("whichever" | "i_whichever", [noun, said]) => {
             let own = verb_phrases::with_predications(nominal(noun)?, said)?;
             Some(own.with_quantifier(Quantifier::The).into())
-        }
-        ("whichever_closer" | "i_whichever_closer", [noun, reference]) => {
-            let reference = Some(phrase(reference)?);
-            Some(questions::with_selection(nominal(noun)?, "closest_to", reference).into())
         }
         ("whatever" | "i_whatever", [said]) => {
             let any =
@@ -283,7 +280,6 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             let reference = Some(phrase(reference)?);
             Some(questions::with_selection(any, &entry_id(order)?, reference).into())
         }
-        ("i_me", []) => Some(Phrase::Speaker),
         ("i_something", []) => {
             let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
             Some(Description::new(Quantifier::Some, noun).into())

@@ -7,6 +7,7 @@ use crate::truth::{Truth, UndecidedReason};
 const OVER_USUAL: f32 = 1.2;
 
 /// The sides of a thing's box, in the axes of its root part, and the usual ones of its kind, m.
+#[expect(clippy::struct_field_names, reason = "the unit")]
 pub(super) struct Proportions {
     /// The height.
     pub(super) height_m: f32,
