@@ -41,7 +41,7 @@ fn drives(wheels: Wheels, noise: [f64; 2], base_factor: f64, seed: u64) -> Vec<V
         let (mut x, mut y, mut heading) = (0.0, 0.0, 0.6 * k as f64 - 0.9);
         let mut rows = Vec::new();
         for j in 0..300 {
-            let t_s = j as f64 / BASE.rate_hz;
+            let t_s = f64::from(j) / BASE.rate_hz;
             let [left, right] = if j == 0 { [0.0; 2] } else { wheels(k, t_s) };
             let turn = BASE.wheel_radius_m * (right - left) / (BASE.wheel_base_m * base_factor);
             let way = 0.5 * BASE.wheel_radius_m * (left + right);
@@ -65,7 +65,9 @@ fn drives(wheels: Wheels, noise: [f64; 2], base_factor: f64, seed: u64) -> Vec<V
 
 fn evidence(drives: &[Vec<DriveRow>]) -> HeadingEvidence {
     let mut evidence = HeadingEvidence::default();
-    drives.iter().for_each(|rows| evidence.add(rows, &BASE));
+    for rows in drives {
+        evidence.add(rows, &BASE);
+    }
     evidence
 }
 
@@ -105,19 +107,19 @@ fn followed(drives: &[Vec<DriveRow>], reading: ColumnReading) -> Vec<Vec<DriveRo
 type Slip = (&'static str, fn(&mut DriveRow));
 const SLIPS: [Slip; 14] = [
     ("do headings grow clockwise? Turn the sign", |row| {
-        row.heading = -row.heading
+        row.heading = -row.heading;
     }),
     ("as of a compass", |row| {
-        row.heading = 0.5 * PI - row.heading
+        row.heading = 0.5 * PI - row.heading;
     }),
     ("headings in degrees? Divide by 57.2958", |row| {
-        row.heading *= DEGREES
+        row.heading *= DEGREES;
     }),
     ("headings in degrees? Divide by 57.2958", |row| {
         row.heading = libm::fmod(row.heading + TAU, TAU) * DEGREES;
     }),
     ("headings in degrees? do headings grow clockwise?", |row| {
-        row.heading *= -DEGREES
+        row.heading *= -DEGREES;
     }),
     (
         "headings in degrees? do headings grow clockwise, as of a compass",
@@ -126,7 +128,7 @@ const SLIPS: [Slip; 14] = [
         },
     ),
     ("were headings in radians read as degrees? Leave", |row| {
-        row.heading /= DEGREES
+        row.heading /= DEGREES;
     }),
     (
         "were headings in radians read as degrees? do headings grow clockwise?",
@@ -144,7 +146,7 @@ const SLIPS: [Slip; 14] = [
     ("from another axis than x", |row| row.heading -= 0.5 * PI),
     ("Turn the sign of y", |row| row.y = -row.y),
     ("Exchange the two columns of \"position\"", |row| {
-        (row.x, row.y) = (row.y, row.x)
+        (row.x, row.y) = (row.y, row.x);
     }),
 ];
 
