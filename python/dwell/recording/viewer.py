@@ -283,7 +283,9 @@ class Recording:
             place = middle + size * np.array([0.25, 0.75, 0.45])
             look["eye_controls"] = eye(position=place.tolist(), look_target=middle.tolist())
         house = blueprint.Spatial3DView(origin="/world", contents=contents, name="house", **look)
-        texts = [blueprint.TextDocumentView(origin=f"/{name}", name=name) for name in self._texts]
+        texts: list[Any] = [
+            blueprint.TextDocumentView(origin=f"/{name}", name=name) for name in self._texts
+        ]
         eyes = [
             blueprint.Spatial2DView(origin=f"{path}/eye", contents=[f"+ {path}/eye/rgb"], name=name)
             for name, path in self._walkers.items()
