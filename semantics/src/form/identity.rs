@@ -52,7 +52,8 @@ impl Form {
     /// Returns whether it says that a thing is itself, puts it into itself, or speaks of another one than a landmark where
     /// another one than the subject is meant.
     pub(crate) fn is_about_itself(&self) -> bool {
-        let is_itself = self.relations().iter().any(|relation| {
+        let relations = self.relations();
+        let is_itself = relations.iter().any(|relation| {
             matches!(
                 &relation.arguments[..],
                 [one, other] if relation.predicate == Modifier::IDENTICAL && one == other
@@ -60,7 +61,7 @@ impl Form {
         });
         // "Nobody on the sofa and nothing on the rug" is not on a sofa and nothing.
         let is_nothing = |item: &Phrase| matches!(item, Phrase::Described(own) if own.quantifier == Quantifier::No);
-        let is_at_nothing = self.relations().iter().any(|relation| {
+        let is_at_nothing = relations.iter().any(|relation| {
             relation.arguments.iter().skip(1).any(
                 |landmark| matches!(landmark, Phrase::List(items) if items.iter().any(is_nothing)),
             )

@@ -51,7 +51,7 @@ pub(super) fn set_description(tree: &Tree) -> Option<Description> {
         ))
     };
     match parts(tree)? {
-        // How many there are is what the speaker takes for granted, as with "the chair".
+        // Of "one of the two chairs" it is taken for granted that there are two, as one is of "the chair"; "all of the two" says it.
         ("set" | "set_counted", [.., noun]) => nominal(noun),
         ("set_other", [noun]) => Some(nominal(noun)?.other()),
         ("set_same", []) => Some(Description::new(Quantifier::Some, Noun::SameThings)),
