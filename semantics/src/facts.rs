@@ -7,7 +7,7 @@ use crate::color::{
 };
 use crate::english::singular_and_plural;
 use crate::form::{Description, Noun};
-use crate::geometry::mapped_area_m2;
+use crate::geometry::triangle_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
 use crate::material_family::family_of;
 use crate::size::SizeClass;
@@ -344,11 +344,15 @@ fn areas_m2(house: &House, id: ObjectId) -> Vec<(MaterialId, f32)> {
     for part in house.objects[id].parts() {
         let part = &house.parts[part];
         let mesh = &house.meshes[part.mesh];
-        for triangle in 0..mesh.triangles.len() {
+        let vertices = mesh.positions.iter();
+        let placed: Vec<Vec3> = vertices
+            .map(|vertex| part.part_from_mesh.transform_point3(*vertex))
+            .collect();
+        for (triangle, corners) in mesh.triangles.iter().enumerate() {
             let Some(material) = part.materials.get(usize::from(mesh.slot(triangle))) else {
                 continue;
             };
-            let area = mapped_area_m2(mesh.corners(triangle), &part.part_from_mesh);
+            let area = triangle_area_m2(corners.map(|vertex| placed[vertex as usize]));
             match areas.iter_mut().find(|(known, _)| known == material) {
                 Some((_, sum)) => *sum += area,
                 None => areas.push((*material, area)),

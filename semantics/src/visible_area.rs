@@ -4,7 +4,7 @@ use dwell_scene::bvh::{BoxTree, Ray, RayMask};
 use dwell_scene::math;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
-use dwell_scene::{Aabb, IdVec, MaterialId, ObjectId, SurfaceOwner};
+use dwell_scene::{Aabb, House, IdVec, MaterialId, ObjectId, SurfaceOwner};
 use glam::Vec3;
 
 /// Number of sides from which a thing is looked at.
@@ -23,7 +23,8 @@ const LEAST_HITS: usize = 12;
 const MOST_AROUND: usize = 64;
 
 /// For each object the visible area of each of its materials, summed over the sides, m²; nothing for hidden things, such as a
-/// plate in a cupboard, and for things in a heap: in the boxes of more than 64 others. `bounds`: the box of each object.
+/// plate in a cupboard, for things in a heap: in the boxes of more than 64 others, and for things of one material, of which the same is
+/// seen from everywhere. `bounds`: the box of each object.
 ///
 /// Walls behind things, and other things before them, occlude as in the house: the back of a cupboard counts for
 /// nothing.
@@ -35,6 +36,9 @@ pub(crate) fn visible_surface_areas(
     let tree = BoxTree::new(bounds.as_slice().to_vec());
     Threads::resolve(None)
         .map(ids.len(), |k| {
+            if has_one_material(rays.house(), ids[k]) {
+                return Vec::new();
+            }
             let own = &bounds[ids[k]];
             // Each ray would hit all the others.
             let middle = Aabb::new(own.center(), own.center());
@@ -46,6 +50,13 @@ pub(crate) fn visible_surface_areas(
             }
         })
         .into()
+}
+
+fn has_one_material(house: &House, id: ObjectId) -> bool {
+    let parts = house.objects[id].parts();
+    let mut materials = parts.flat_map(|part| &house.parts[part].materials);
+    let first = materials.next();
+    materials.all(|material| Some(material) == first)
 }
 
 fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId, f32)> {

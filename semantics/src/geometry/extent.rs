@@ -1,7 +1,7 @@
 //! Extents of things: the box, the outline from above, and the points of support.
 
 use super::hull::Hull;
-use super::triangles::object_triangles;
+use super::triangles::PlacedTriangles;
 use dwell_scene::{Aabb, House, ObjectId, State};
 use glam::{Vec2, Vec3};
 
@@ -25,16 +25,15 @@ pub struct Extent {
 impl Extent {
     /// Measures `object` as it stands in `state`.
     pub fn measure(house: &House, state: &State, object: ObjectId) -> Self {
+        let placed = PlacedTriangles::gather(house, state, object);
         let mut bounds = Aabb::EMPTY;
-        let mut outline = Vec::new();
-        object_triangles(house, state, object, |corners| {
-            for corner in corners {
-                bounds.add_point(corner);
-                outline.push(Vec2::new(corner.x, corner.z));
-            }
-        });
+        let mut outline = Vec::with_capacity(placed.positions.len());
+        for corner in placed.used_positions() {
+            bounds.add_point(corner);
+            outline.push(Vec2::new(corner.x, corner.z));
+        }
         let footprint = Hull::around(outline);
-        let sole = underside_points(house, state, object, bounds.min.y + SOLE_M);
+        let sole = underside_points(&placed, bounds.min.y + SOLE_M);
         Self {
             bounds,
             footprint,
@@ -48,20 +47,22 @@ impl Extent {
     }
 }
 
-fn underside_points(house: &House, state: &State, object: ObjectId, top: f32) -> Vec<Vec3> {
+fn underside_points(placed: &PlacedTriangles, top: f32) -> Vec<Vec3> {
     let mut faces: Vec<([Vec3; 3], f32)> = Vec::new();
-    let mut corners_below: Vec<Vec3> = Vec::new();
-    object_triangles(house, state, object, |corners| {
-        corners_below.extend(corners.iter().filter(|corner| corner.y <= top));
+    for corners in placed.corners() {
+        if !corners.iter().all(|corner| corner.y <= top) {
+            continue;
+        }
         let [a, b, c] = corners;
         let normal = (b - a).cross(c - a);
-        let flat = normal.y.abs() > 0.5 * normal.length();
-        if flat && corners.iter().all(|corner| corner.y <= top) {
+        if normal.y.abs() > 0.5 * normal.length() {
             faces.push((corners, normal.length() * 0.5));
         }
-    });
+    }
     let total: f32 = faces.iter().map(|(_, area)| area).sum();
     if total <= 0.0 {
+        let below = placed.corners().flatten().filter(|corner| corner.y <= top);
+        let corners_below: Vec<Vec3> = below.collect();
         let step = corners_below.len().div_ceil(SOLE_POINTS).max(1);
         return corners_below.into_iter().step_by(step).collect();
     }

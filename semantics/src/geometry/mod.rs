@@ -7,5 +7,5 @@ mod triangles;
 pub use extent::Extent;
 pub use hull::Hull;
 pub(crate) use triangles::{
-    height_under, mapped_area_m2, object_triangles_near, structure_triangles,
+    height_under, object_triangles_near, structure_triangles, triangle_area_m2,
 };

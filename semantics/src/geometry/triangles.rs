@@ -1,29 +1,61 @@
 //! Triangles where they stand, and rays against them.
 
 use dwell_scene::{Aabb, House, ObjectId, State, StructureId};
-use glam::{Affine3A, Vec3};
+use glam::Vec3;
 
-/// Calls `visit` with the corners of every triangle of an object where it stands in `state`, in world space, m.
-pub(crate) fn object_triangles(
-    house: &House,
-    state: &State,
-    object: ObjectId,
-    mut visit: impl FnMut([Vec3; 3]),
-) {
-    for id in house.objects[object].parts() {
-        let part = &house.parts[id];
-        let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
-        let mesh = &house.meshes[part.mesh];
-        for triangle in 0..mesh.triangles.len() {
-            visit(
-                mesh.corners(triangle)
-                    .map(|corner| world_from_mesh.transform_point3(corner)),
-            );
+/// The triangles of an object where it stands in a state: each vertex is placed once.
+pub(crate) struct PlacedTriangles {
+    /// Vertices in world space, m.
+    pub(crate) positions: Vec<Vec3>,
+    /// The vertices of each triangle.
+    pub(crate) triangles: Vec<[u32; 3]>,
+}
+
+impl PlacedTriangles {
+    /// Places the triangles of `object` as it stands in `state`.
+    pub(crate) fn gather(house: &House, state: &State, object: ObjectId) -> Self {
+        let mut placed = Self {
+            positions: Vec::new(),
+            triangles: Vec::new(),
+        };
+        for id in house.objects[object].parts() {
+            let part = &house.parts[id];
+            let world_from_mesh = state.part_pose[id].to_affine() * part.part_from_mesh;
+            let mesh = &house.meshes[part.mesh];
+            let before = placed.positions.len() as u32;
+            let vertices = mesh.positions.iter();
+            placed
+                .positions
+                .extend(vertices.map(|vertex| world_from_mesh.transform_point3(*vertex)));
+            let own = mesh.triangles.iter();
+            placed
+                .triangles
+                .extend(own.map(|corners| corners.map(|vertex| before + vertex)));
         }
+        placed
+    }
+
+    /// The vertices that triangles have, each once.
+    pub(crate) fn used_positions(&self) -> impl Iterator<Item = Vec3> + '_ {
+        let mut is_used = vec![false; self.positions.len()];
+        for vertex in self.triangles.iter().flatten() {
+            is_used[*vertex as usize] = true;
+        }
+        let all = self.positions.iter().zip(is_used);
+        all.filter_map(|(position, is_used)| is_used.then_some(*position))
+    }
+
+    /// The corners of every triangle, m.
+    pub(crate) fn corners(&self) -> impl Iterator<Item = [Vec3; 3]> + '_ {
+        let corner = |vertex: u32| self.positions[vertex as usize];
+        self.triangles
+            .iter()
+            .map(move |triangle| triangle.map(corner))
     }
 }
 
-/// As [`object_triangles`], without most of those that do not reach into `reach`.
+/// Calls `visit` with the corners of the triangles of an object where it stands in `state`, in world space, m, without most of those that
+/// do not reach into `reach`.
 pub(crate) fn object_triangles_near(
     house: &House,
     state: &State,
@@ -66,9 +98,8 @@ pub(crate) fn structure_triangles(
     }
 }
 
-/// The area of a triangle after `map`, m².
-pub(crate) fn mapped_area_m2(corners: [Vec3; 3], map: &Affine3A) -> f64 {
-    let [a, b, c] = corners.map(|corner| map.transform_point3(corner));
+/// The area of a triangle, m².
+pub(crate) fn triangle_area_m2([a, b, c]: [Vec3; 3]) -> f64 {
     f64::from((b - a).cross(c - a).length()) * 0.5
 }
 

@@ -97,6 +97,10 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             Some(description.with_quantifier(Quantifier::The).into())
         }
         ("every_piece", [noun]) => quantified_piece(Quantifier::Every, noun, None),
+        ("every_piece_here", [noun]) => quantified(
+            Quantifier::Every,
+            places::structure(noun, Some(places::in_room_of_listener()))?,
+        ),
         ("every_piece_of", [noun, place]) => quantified_piece(Quantifier::Every, noun, Some(place)),
         ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
         ("closer_one" | "whichever_closer" | "i_whichever_closer", [noun, reference]) => {
@@ -197,9 +201,10 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
         ("by_id" | "i_by_id", [own]) => Some(Phrase::Id(number(own)?)),
         ("you" | "i_you", []) => Some(Phrase::Listener),
         ("it" | "i_it", []) => Some(Phrase::Pronoun),
-        ("structure_np" | "i_structure" | "piece_np" | "i_piece_np", [noun]) => {
-            places::structure(noun, None)
-        }
+        (
+            "structure_np" | "structures" | "i_structure" | "piece_np" | "pieces" | "i_piece_np",
+            [noun],
+        ) => places::structure(noun, None),
         ("structure_at" | "i_structure_at", [noun, side])
         | ("structure_flank" | "i_structure_flank", [side, noun]) => {
             places::structure(noun, Some(places::side_from_tree(side)?))
@@ -326,7 +331,11 @@ fn quantified_piece(quantifier: Quantifier, noun: &Tree, place: Option<&Tree>) -
         Some(place) => Some(Modifier::new("in_room", [room(place)?])),
         None => None,
     };
-    match places::structure(noun, there)? {
+    quantified(quantifier, places::structure(noun, there)?)
+}
+
+fn quantified(quantifier: Quantifier, phrase: Phrase) -> Option<Phrase> {
+    match phrase {
         Phrase::Described(own) => Some(own.with_quantifier(quantifier).into()),
         _ => None,
     }

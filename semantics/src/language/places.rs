@@ -32,6 +32,14 @@ pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phras
     Some(own.into())
 }
 
+/// Of what is in the room that the listener is in.
+pub(super) fn in_room_of_listener() -> Modifier {
+    let room = Noun::Room(Noun::ANY_ROOM.to_owned());
+    let with = Modifier::new("room_contains", [Phrase::Listener]);
+    let here = Description::new(Quantifier::The, room).with_modifier(with);
+    Modifier::new("in_room", [here.into()])
+}
+
 /// A piece of the building with its colour and substance: "the white brick wall".
 fn structure_description(noun: &Tree) -> Option<Description> {
     let plain = |noun: &Tree| {

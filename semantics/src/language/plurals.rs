@@ -11,18 +11,24 @@ use crate::grammar::Tree;
 ///
 /// - a bare plural as "some" where a plural or a denial goes before;
 /// - "on the shelves" as on any of them, "with the green chairs" as with several;
-/// - "the walls of the kitchen" as every wall of it where something is said of them.
+/// - "the walls of the kitchen" as every wall of it where something is said of them, "the walls" as those of the room that was named before,
+///   or of the listener's.
 pub(super) fn resolve_plurals(tree: Tree) -> Tree {
-    distributed(tree, false)
+    distributed(tree, false, &mut None)
 }
 
-fn distributed(tree: Tree, under_plural: bool) -> Tree {
-    let Tree::Apply {
-        function,
-        arguments,
-    } = tree
-    else {
-        return tree;
+/// `room` is the word of the room that was named last.
+fn distributed(tree: Tree, under_plural: bool, room: &mut Option<Tree>) -> Tree {
+    let (function, arguments) = match tree {
+        Tree::Apply {
+            function,
+            arguments,
+        } => (function, arguments),
+        Tree::Entry { ref class, .. } if class == "room" || class == "room_noun" => {
+            *room = Some(tree.clone());
+            return tree;
+        }
+        tree => return tree,
     };
     let function = match function.as_str() {
         "bare_plural" if under_plural => "some".to_owned(),
@@ -49,11 +55,12 @@ fn distributed(tree: Tree, under_plural: bool) -> Tree {
             Some(("i_the_plural", _)) if is_possession => renamed(argument, "i_at_least_two"),
             _ => argument,
         };
-        let mut argument = distributed(argument, under);
+        let room_before = room.clone();
+        let mut argument = distributed(argument, under, room);
         if at == 0 {
             under |= subject_is_plural;
             if is_said {
-                argument = as_every_piece_of(argument);
+                argument = as_every_piece(argument, room_before);
             }
         }
         distributed_arguments.push(argument);
@@ -78,9 +85,14 @@ fn is_plural(function: &str, arguments: &[Tree]) -> bool {
     }
 }
 
-fn as_every_piece_of(tree: Tree) -> Tree {
-    match parts(&tree) {
-        Some(("pieces_of" | "structures_of", _)) => renamed(tree, "every_piece_of"),
+fn as_every_piece(tree: Tree, room_before: Option<Tree>) -> Tree {
+    match (parts(&tree), room_before) {
+        (Some(("pieces_of" | "structures_of", _)), _) => renamed(tree, "every_piece_of"),
+        (Some(("pieces" | "structures", [noun])), Some(room)) => {
+            let room = Tree::apply("room_the", [Tree::apply("room_kind", [room])]);
+            Tree::apply("every_piece_of", [noun.clone(), room])
+        }
+        (Some(("pieces" | "structures", _)), None) => renamed(tree, "every_piece_here"),
         _ => tree,
     }
 }

@@ -53,6 +53,8 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
                 RequestStep::GoTo(room(to)?),
             ]
         }
+        // What is said of the way there.
+        ("but_around", [to, around]) => vec![act("go_around", around)?, step(to)?],
         ("go_around_to", [around, to]) => {
             vec![act("go_around", around)?, act("approach", to)?]
         }
