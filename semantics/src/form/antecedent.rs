@@ -446,7 +446,11 @@ impl Resolver {
                     Quantifier::The | Quantifier::Some | Quantifier::Exactly(1)
                 );
                 let is_complete = Form::NounPhrase(mention.phrase.clone()).is_free_of_anaphora();
-                (named.noun == noun && is_one && is_complete).then_some((named, mention))
+                // "The floor of the kitchen is gray, but in the other room it is wooden": not in the kitchen.
+                let is_alike = named.noun == noun
+                    || noun == Noun::Room(Noun::ANY_ROOM.to_owned())
+                        && matches!(named.noun, Noun::Room(_));
+                (is_alike && is_one && is_complete).then_some((named, mention))
             });
             if let Some((named, mention)) = named.next() {
                 if named.quantifier != Quantifier::The {
