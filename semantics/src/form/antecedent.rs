@@ -1,7 +1,7 @@
 //! Pronouns and their antecedents.
 
 use super::mention::{
-    exactly_one_as_definite, is_any_room, is_singular, object_with_predicate,
+    exactly_one_as_definite, is_any_room, is_singular, may_be_one, object_with_predicate,
     subject_with_predicate, subject_without_predicate, topic_of,
 };
 use super::visit::{PhraseRole, visit_clause, visit_form, visit_step};
@@ -140,6 +140,35 @@ pub(super) struct Mention {
     pub(super) is_argument: bool,
 }
 
+/// Puts the landmark of the first of `items` in place of "it" where the first can't be meant: in "one curtain to the left of the window and
+/// one to the right of it", and after several, "two lamps on the ceiling and one hanging from it".
+fn share_landmark(items: &mut [Phrase]) {
+    let Some((Phrase::Described(first), rest)) = items.split_first_mut() else {
+        return;
+    };
+    let landmark = first
+        .modifiers
+        .last()
+        .and_then(|last| last.arguments.first());
+    let Some(landmark @ Phrase::Described(_)) = landmark else {
+        return;
+    };
+    let first_is_one = may_be_one(&Phrase::Described(first.clone()));
+    for item in rest {
+        let Phrase::Described(own) = item else {
+            continue;
+        };
+        if first_is_one && own.noun != Noun::SameNoun {
+            continue;
+        }
+        for argument in own.modifiers.iter_mut().flat_map(|own| &mut own.arguments) {
+            if *argument == Phrase::Pronoun {
+                argument.clone_from(landmark);
+            }
+        }
+    }
+}
+
 /// Puts antecedents in place of what stands for them, clause by clause and step by step.
 pub(super) struct Resolver {
     pub(super) mentions: Vec<Mention>,
@@ -237,6 +266,9 @@ impl Resolver {
                     Clause::Exists(Phrase::Described(own))
                         if own.noun == Noun::SameNoun && own.modifiers.is_empty()
                 );
+                if let Clause::Exists(Phrase::List(items)) = one {
+                    share_landmark(items);
+                }
                 self.resolve_unit(verb.as_deref(), |visit| visit_clause(one, visit));
                 if let Clause::Exists(Phrase::Described(own)) = &mut *one
                     && is_part_of_several
@@ -395,11 +427,15 @@ impl Resolver {
     /// Puts the last thing of the same noun in place of what a description is other than.
     fn resolve_other(&self, own: &mut Description) {
         let noun = own.noun.clone();
+        let is_room = matches!(noun, Noun::Room(_));
         let mut shared: Vec<Modifier> = Vec::new();
         let others = own
             .modifiers
             .iter_mut()
             .flat_map(|modifier| &mut modifier.arguments);
+        let room_of_listener =
+            Description::new(Quantifier::The, Noun::Room(Noun::ANY_ROOM.to_owned()))
+                .with_modifier(Modifier::new("room_contains", [Phrase::Listener]));
         for other in others.filter(|other| **other == Phrase::NamedBefore) {
             let mut named = self.mentions.iter().rev().filter_map(|mention| {
                 let Phrase::Described(named) = &mention.phrase else {
@@ -410,7 +446,11 @@ impl Resolver {
                     Quantifier::The | Quantifier::Some | Quantifier::Exactly(1)
                 );
                 let is_complete = Form::NounPhrase(mention.phrase.clone()).is_free_of_anaphora();
-                (named.noun == noun && is_one && is_complete).then_some((named, mention))
+                // "The floor of the kitchen is gray, but in the other room it is wooden": not in the kitchen.
+                let is_alike = named.noun == noun
+                    || noun == Noun::Room(Noun::ANY_ROOM.to_owned())
+                        && matches!(named.noun, Noun::Room(_));
+                (is_alike && is_one && is_complete).then_some((named, mention))
             });
             if let Some((named, mention)) = named.next() {
                 if named.quantifier != Quantifier::The {
@@ -419,6 +459,9 @@ impl Resolver {
                 }
                 let named = mention.with_said.as_ref().unwrap_or(named);
                 *other = named.clone().with_quantifier(Quantifier::The).into();
+            } else if is_room {
+                // "The other room", where none was named: not the one that the listener is in.
+                *other = room_of_listener.clone().into();
             }
         }
         if own.modifiers.len() == 1 {

@@ -14,6 +14,7 @@ impl Resolver {
         };
         let earlier = || self.mentions.iter().rev().filter(|mention| named(mention));
         let is_topic = |mention: &&Mention| mention.role == PhraseRole::Topic;
+        let is_definite = |mention: &&Mention| matches!(&mention.phrase, Phrase::Described(own) if own.quantifier == Quantifier::The);
         let is_several = |mention: &&Mention| !may_be_one(&mention.phrase);
         // "The wardrobe has three doors, and all of them are shut": the doors.
         let found = earlier()
@@ -21,7 +22,8 @@ impl Resolver {
             .or_else(|| {
                 earlier().find(|mention| mention.with_said.is_some() && is_several(mention))
             })
-            .or_else(|| earlier().find(is_topic))?;
+            // "The cup is next to the plate, and they are white" names both, which no phrase of the form does.
+            .or_else(|| earlier().find(|mention| is_topic(mention) && !is_definite(mention)))?;
         match &found.phrase {
             Phrase::Described(named) => Some(found.with_said.as_ref().unwrap_or(named)),
             _ => None,

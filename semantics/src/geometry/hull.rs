@@ -54,6 +54,16 @@ fn extreme_points(points: &[Vec2]) -> Vec<Vec2> {
     extremes.into_iter().flatten().collect()
 }
 
+/// The half planes, as normals and offsets, whose intersection lies so deep inside that no outline around these corners and others has a
+/// corner there.
+fn inner_sides(outline: &Hull) -> Vec<(Vec2, f32)> {
+    let sides = outline.edges().map(|(a, b)| {
+        let normal = (b - a).perp().normalize_or_zero();
+        (normal, normal.dot(a) + 2.0 * STRAIGHT_M)
+    });
+    sides.collect()
+}
+
 impl Hull {
     /// The smallest convex outline around `points`.
     ///
@@ -63,8 +73,16 @@ impl Hull {
     pub fn around(points: impl IntoIterator<Item = Vec2>) -> Self {
         let mut points: Vec<Vec2> = points.into_iter().filter(|p| p.is_finite()).collect();
         if points.len() > FEW_POINTS {
-            let inner = Self::of_few(extreme_points(&points));
-            points.retain(|point| !inner.is_deep_inside(*point));
+            let sides = inner_sides(&Self::of_few(extreme_points(&points)));
+            let is_deep_inside = |point: Vec2| {
+                let mut depths = sides
+                    .iter()
+                    .map(|(normal, offset)| normal.dot(point) - offset);
+                depths.all(|depth| depth > 0.0)
+            };
+            if sides.len() > 2 {
+                points.retain(|point| !is_deep_inside(*point));
+            }
         }
         Self::of_few(points)
     }
@@ -94,15 +112,6 @@ impl Hull {
         let mut points = chain(&mut sorted.iter().copied());
         points.extend(chain(&mut sorted.iter().rev().copied()));
         Self { points }
-    }
-
-    /// Returns whether `point` lies so far inside that no outline around these corners and others has it for a corner.
-    fn is_deep_inside(&self, point: Vec2) -> bool {
-        self.points.len() > 2
-            && self.edges().all(|(a, b)| {
-                let edge = b - a;
-                edge.perp_dot(point - a) > 2.0 * STRAIGHT_M * edge.length()
-            })
     }
 
     /// The corners.

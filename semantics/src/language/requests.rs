@@ -270,6 +270,10 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
             let in_room = Modifier::new("in_room", [room(from)?]);
             act_on_modified(&entry_id(verb)?, object, in_room)?
         }
+        ("do_from_thing", [verb, object, from]) => {
+            let belongs = Modifier::new("belongs_to", [phrase(from)?]);
+            act_on_modified(&entry_id(verb)?, object, belongs)?
+        }
         ("look_in_for", [relation, place, object]) => act_on_modified(
             "find",
             object,

@@ -41,6 +41,7 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("put_two", [one, first, to, other, second, there]) => {
             vec![put(one, first, to)?, put(other, second, there)?]
         }
+        ("step_facing", [first, faced]) => vec![step(first)?, act("face", faced)?],
         ("without_touching", [first, object]) => {
             vec![step(first)?, refrain("touch", object)?]
         }
