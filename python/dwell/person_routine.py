@@ -34,6 +34,12 @@ _HAND = {
 _LOOKS = ("face", "point_at", "find", "approach")
 #: Steps after which it gives a way, a look or a reach up; tries of an action of the hand.
 _WALK_STEPS, _LOOK_STEPS, _TRIES = 3000, 60, 3
+#: From this openness on a door is open: it goes no further than its limit, less what its drive leaves.
+_OPEN = 0.9
+#: A door that moves by less than this share in each of so many steps has stopped.
+_STILL, _STILL_STEPS = 1e-4, 10
+#: Distance from the outline of a door that stopped, from which it is tried again, m.
+_ASIDE_M = 1.0
 #: So many steps it points.
 _POINT_STEPS = 20
 #: Floors of two storeys are further apart than this, m.
@@ -205,9 +211,11 @@ class PersonRoutine:
                 where = "put_in" if told["predicate"] in ("in", "inside") else "place"
                 yield from self._handle(where, things[1]["name"])
             elif kind == "do" and told["verb"] in _HAND:
-                if self._is_so(told["verb"], things[0]["name"]):
+                name = things[0]["name"]
+                if self._is_so(told["verb"], name):
                     continue
-                yield from self._handle(_HAND[told["verb"]], things[0]["name"])
+                yield from self._handle(_HAND[told["verb"]], name)
+                yield from self._until_so(told["verb"], name)
             elif kind == "do" and told["verb"] in _LOOKS:
                 yield from self._look(told["verb"], things[0])
             else:
@@ -243,14 +251,19 @@ class PersonRoutine:
             yield action
         raise _GivenUpError("no way leads there in time")
 
-    def _beside(self, thing: str) -> NDArray[np.float32]:
-        """The place to stand that is nearest to a thing's outline."""
+    def _beside(self, thing: str, gap_m: float = 0.0) -> NDArray[np.float32]:
+        """The place to stand that is nearest to a thing's outline; with ``gap_m`` the one at that distance or
+        more that is nearest to the person.
+        """
         row = self._world.object(thing)
         here = np.asarray(self._world.agents()[self._agent]["position"])
         places = self._world.navigation().points(here.tolist())
         middle, half = np.asarray(row["center"]), 0.5 * np.asarray(row["size"])
         away = np.maximum(np.abs(places - middle) - half, 0.0)[:, [0, 2]]
         cost = np.hypot(*away.T) + 0.1 * np.hypot(*(places - middle)[:, [0, 2]].T)
+        if gap_m > 0.0:
+            way = np.hypot(*(places - here)[:, [0, 2]].T)
+            cost = np.where(np.hypot(*away.T) >= gap_m, way, np.inf)
         cost = np.where(np.abs(places[:, 1] - (middle - half)[1]) > _STOREY_M, np.inf, cost)
         if not len(places) or not np.isfinite(cost).any():
             raise _GivenUpError(f"nobody can stand beside {thing}")
@@ -294,7 +307,29 @@ class PersonRoutine:
         if verb in ("switch_on", "switch_off"):
             return bool(row["on"] == (verb == "switch_on"))
         openness = row["openness"]
-        return verb == "close" and openness is not None and float(np.max(openness)) == 0.0
+        if verb not in ("open", "close") or openness is None:
+            return False
+        return float(np.max(openness)) >= _OPEN if verb == "open" else not np.any(openness)
+
+    def _until_so(self, verb: str, thing: str) -> Iterator[str]:
+        """Waits until what a door was set to do is done; a door that sticks is tried again."""
+        if verb not in ("open", "close"):
+            return
+        for _ in range(_TRIES):
+            before = self._world.object(thing)["openness"]
+            still = 0
+            while still < _STILL_STEPS and not self._is_so(verb, thing):
+                yield "wait"
+                after = self._world.object(thing)["openness"]
+                still = 0 if np.max(np.abs(np.subtract(after, before))) > _STILL else still + 1
+                before = after
+            if self._is_so(verb, thing):
+                return
+            # A door that swings may have met the body: it steps back.
+            yield from self._walk(self._beside(thing, _ASIDE_M))
+            yield from self._look("face", {"name": thing})
+            yield _HAND[verb]
+        raise _GivenUpError(f"{thing} did not {verb}: something is in its way")
 
     def _facts(self, thing: str) -> tuple[Any, ...]:
         """What an action of the hand on a thing changes."""

@@ -78,17 +78,16 @@ def file_of_laws_named(laws: Laws) -> Iterator[None]:
         raise type(error)(f"laws: {path('laws', laws)}: {error}") from None
 
 
-def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
-    """Laws and parameters by address, from all accepted forms.
+def found(laws: Laws, at: str = "laws") -> tuple[list[dict[str, Any]], dict[str, float]]:
+    """Laws and parameters by address, from all accepted forms; ``at``: what errors begin with.
 
     Raises:
         ConfigError: It is none of them, or a law, a parameter or a number that there is not.
         OSError: It is the path of a file that the system refuses to read.
     """
-    at = "laws"
     if _is_file(laws):
         laws = path(at, laws)
-        at = f"laws: {laws}"
+        at = f"{at}: {laws}"
         laws = _read(laws)
     if laws is None:
         return [], {}
@@ -124,15 +123,17 @@ def found(laws: Laws) -> tuple[list[dict[str, Any]], dict[str, float]]:
     return rows, _values(f"{at}: parameters", parameters)
 
 
-def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
-    """What is installed beside what is drawn, and the intervals by address.
+def intervals(
+    randomize: Randomize,
+) -> tuple[tuple[list[dict[str, Any]], dict[str, float]], dict[str, list[float]]]:
+    """Laws and parameters that are installed beside what is drawn, and the intervals by address.
 
     Raises:
         ConfigError: It is neither what calibration found nor intervals by address.
         OSError: It is the path of a file that the system refuses to read.
     """
     if randomize is None:
-        return None, {}
+        return ([], {}), {}
     at = "randomize"
     if isinstance(randomize, str | os.PathLike):
         file = path(at, randomize)
@@ -151,7 +152,7 @@ def intervals(randomize: Randomize) -> tuple[Laws, dict[str, list[float]]]:
         fixed = {name: given[name] for name in sorted(_FOUND & set(given))}
         given = mapping(f"{at}: intervals", given.get("intervals", {}), "[low, high] by address")
     rows = {address: _interval(f"{at}: {address}", ends) for address, ends in given.items()}
-    return fixed, rows
+    return found(fixed, at), rows
 
 
 def _refuse_other_version(at: str, given: Mapping[str, Any]) -> None:
@@ -284,8 +285,7 @@ def world_settings(
     if further.get("sound_root") is not None:
         further = {**further, "sound_root": path("sound_root", further["sound_root"])}
     rows, values = found(laws)
-    fixed, drawn = intervals(randomize)
-    found_rows, found_values = found(fixed)
+    (found_rows, found_values), drawn = intervals(randomize)
     said = {(row["id"], row.get("target")) for row in rows}
     rows += [row for row in found_rows if (row["id"], row.get("target")) not in said]
     values = {**found_values, **values}

@@ -197,6 +197,40 @@ def test_snapshots_of_something_else_are_refused_by_a_batch() -> None:
     assert env.state_hashes() == [before[0], after[1]]
 
 
+def test_a_refused_snapshot_changes_nothing() -> None:
+    """Of another task, and of a world with other steps, which the engine refuses late."""
+    room = DwellEnv("RoomNav", houses="builtin:studio", sensors=SMALL)
+    room.reset(seed=1)
+    other = DwellEnv("PointNav", houses="builtin:apartment", sensors=SMALL)
+    other.reset(seed=1)
+    slow = DwellEnv(
+        "RoomNav", houses="builtin:studio", sensors=SMALL, world={"control_rate_hz": 5.0}
+    )
+    slow.reset(seed=1)
+    twin = DwellEnv("RoomNav", houses="builtin:studio", sensors=SMALL)
+    twin.reset(seed=1)
+    for saved in (other.snapshot(), slow.snapshot()):
+        with pytest.raises(dwell.ConfigError, match="refused"):
+            room.restore(saved)
+        for env in (room, twin):
+            env.step(1)
+        assert room.state_hash() == twin.state_hash()
+    many = DwellVectorEnv(2, "RoomNav", houses="builtin:studio", sensors=SMALL)
+    many.reset(seed=1)
+    own = many.snapshot()
+    many.step(np.array([1, 2]))
+    before = many.state_hashes()
+    strange = DwellVectorEnv(
+        2, "RoomNav", houses="builtin:studio", sensors=SMALL, world={"control_rate_hz": 5.0}
+    )
+    strange.reset(seed=1)
+    # The first one fits; it is not restored alone.
+    with pytest.raises(dwell.ConfigError, match="refused"):
+        many.restore([own[0], strange.snapshot()[1]])
+    assert many.state_hashes() == before
+    many.step(np.array([1, 1]))
+
+
 def test_what_an_episode_ended_with_stands_in_final_info() -> None:
     env = DwellVectorEnv(2, sensors=SMALL, autoreset_mode="SameStep")
     env.reset(seed=0)

@@ -47,7 +47,8 @@ def test_errands_are_done_from_their_time_on() -> None:
     (report,) = routine.reports
     assert report.failure == ""
     assert report.errand.sentence == DAY["07:00"]
-    assert world.object("refrigerator_1")["openness"] > 0.05
+    # Its door swings against the person, who steps back.
+    assert world.object("refrigerator_1")["openness"] >= 0.9
     assert world.check("You are in the kitchen.", agent=0)["answer"]["truth"]
     played(routine, world, 2)
     assert routine.reports[1].failure == ""
@@ -64,7 +65,7 @@ def test_of_errands_that_are_due_at_once_the_last_one_counts() -> None:
     assert routine.errand is not None
     assert (
         routine.errand.hour
-        == max(errand.hour for errand in routine.errands if errand.hour <= routine.hour)
+        == max((row.hour for row in routine.errands if row.hour <= routine.hour), default=-1.0)
         or routine.errand == routine.errands[-1]
     )
 

@@ -33,6 +33,13 @@ def drawn(world: dwell.World) -> tuple[float, float]:
     return tuple(world.parameter(address)["value"] for address in (GRAVITY, DRAG))  # type: ignore[return-value] # two
 
 
+def test_what_is_wrong_in_a_file_is_said_of_randomize(tmp_path: Path) -> None:
+    file = tmp_path / "found.json"
+    file.write_text(json.dumps({**FOUND, "parameters": {GRAVITY: "9.8"}}))
+    with pytest.raises(dwell.ConfigError, match=r"^randomize: .*found\.json: parameters"):
+        dwell.World("builtin:studio", randomize=str(file))
+
+
 def test_a_world_draws_by_its_seed(shoebox: dwell.House) -> None:
     worlds = [dwell.World(shoebox, seed=seed, randomize=INTERVALS) for seed in (0, 0, 1)]
     first, again, other = map(drawn, worlds)

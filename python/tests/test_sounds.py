@@ -53,6 +53,27 @@ def test_files_are_those_of_the_format(tmp_path: Path) -> None:
     world.step()
 
 
+def test_a_file_that_was_written_anew_is_read_again(tmp_path: Path) -> None:
+    house = dwell.House.open("builtin:studio")
+    path = tmp_path / "a.wav"
+
+    def heard(level: float) -> float:
+        """Loudest sample of a click at the head, Pa."""
+        write_wav(path, np.full((1, int(1600 * level)), level, np.float32), 16_000)
+        world = dwell.World(house, sound_root=tmp_path)
+        place = np.asarray(world.agents()[0]["position"]) + (0.0, 1.5, 0.5)
+        world.play("a.wav", at=place.tolist(), level_db=80.0)
+        world.listen(1)
+        return sum(
+            float(np.abs(world.listen(world.samples_a_step)).sum())
+            for _ in range(12)
+            if world.step() is None
+        )
+
+    short, long = heard(1.0), heard(4.0)
+    assert long > 2.0 * short
+
+
 def test_sixteen_bits_have_the_scale_that_was_asked_for(tmp_path: Path) -> None:
     path = tmp_path / "a.wav"
     write_wav(path, SOUND, 16_000, full_scale_pa=20.0)

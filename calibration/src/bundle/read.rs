@@ -12,7 +12,9 @@ use super::{
 };
 use crate::error::CalibrationError;
 use dwell_scene::file::{self, ReadError};
+use serde::Deserialize as _;
 use serde::de::DeserializeOwned;
+use serde_json::Value;
 use std::collections::{BTreeMap, BTreeSet};
 use std::fs;
 use std::io::{BufReader, Read as _};
@@ -139,6 +141,16 @@ fn manifest(folder: &Path) -> Result<MeasurementDescription, CalibrationError> {
             at,
             what: "found a list; expected values by name".to_owned(),
         });
+    }
+    // Of an enumeration that is no text the reader says only that a value was expected.
+    if let Ok(Value::Object(fields)) = serde_json::from_str(text)
+        && let Some(kind) = fields.get("kind")
+        && BundleKind::deserialize(kind).is_err()
+    {
+        let allowed = BundleKind::deserialize(&Value::from(""))
+            .map_or_else(|error| error.to_string(), |_| String::new());
+        let allowed = allowed.rsplit("expected ").next().unwrap_or_default();
+        return Err(CalibrationError::field(at, "kind", kind, allowed));
     }
     serde_json::from_str(text).map_err(|error| CalibrationError::Syntax {
         at: format!("{at} line {}", error.line()),

@@ -180,7 +180,7 @@ impl Engines {
         })
     }
 
-    /// A sound file below `root` at a sample rate, and its check sum; read once.
+    /// A sound file below `root` at a sample rate, and its check sum; read again once it was written anew.
     pub(crate) fn recording(
         &self,
         root: Option<&str>,

@@ -140,9 +140,22 @@ impl Env {
     /// were not there begin with what they sense now.
     ///
     /// # Errors
-    /// [`WorldError::Snapshot`] with the reason. No episode runs then, except after one that names another task, settings or step sizes:
-    /// the environment stays as it was.
+    /// [`WorldError::Snapshot`] with the reason. The environment then stays as it was.
     pub fn restore(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
+        // Without an episode there is none to return to.
+        let before = self.snapshot();
+        let refused = self.restore_snapshot(bytes);
+        if refused.is_err()
+            && before
+                .and_then(|before| self.restore_snapshot(&before))
+                .is_err()
+        {
+            self.clear_episodes();
+        }
+        refused
+    }
+
+    fn restore_snapshot(&mut self, bytes: &[u8]) -> Result<(), WorldError> {
         let refuse = |why: String| WorldError::Snapshot(why);
         let body = bytes
             .strip_prefix(MAGIC)
@@ -161,14 +174,7 @@ impl Env {
             }
         }
         self.reset_stated(moment.seed, &moment.specs)?;
-        let restored = self.restore_world(&moment);
-        let tokens = match restored {
-            Ok(tokens) => tokens,
-            Err(error) => {
-                self.clear_episodes();
-                return Err(error);
-            }
-        };
+        let tokens = self.restore_world(&moment)?;
         let agents = self.agents.iter_mut().zip(moment.agents);
         for ((agent, saved), tokens) in agents.zip(tokens) {
             saved.apply(agent, tokens);

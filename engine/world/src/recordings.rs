@@ -7,14 +7,29 @@ use dwell_acoustics::{AcousticsError, Recording};
 use dwell_houses::{DataRoot, FileLocation, HousesError};
 use dwell_scene::{House, SoundFileId, interrupt};
 use std::collections::{BTreeMap, BTreeSet};
+use std::fs;
+use std::path::Path;
 use std::sync::{Mutex, OnceLock, PoisonError};
+use std::time::SystemTime;
 use xxhash_rust::xxh3::Xxh3;
 
 /// Number of samples that are kept; beyond it all are dropped, and those that are played again are read again: 256 MiB.
 const MOST_KEPT: usize = 1 << 26;
 
+/// When a file was written last, and its length, bytes.
+type FileStamp = (SystemTime, u64);
+
+/// A decoded file.
+#[derive(Clone, Debug)]
+struct LoadedSound {
+    signal: Signal,
+    hash: u64,
+    /// `None` where the system does not tell: such a file is read again each time.
+    stamp: Option<FileStamp>,
+}
+
 /// Decoded files by root, path and rate.
-type LoadedSounds = BTreeMap<(String, String, u32), (Signal, u64)>;
+type LoadedSounds = BTreeMap<(String, String, u32), LoadedSound>;
 
 /// The house's own sounds, by number and rate. They sound in every block, so none is dropped.
 #[derive(Debug, Default)]
@@ -40,8 +55,13 @@ fn hash_samples(samples: &[f32]) -> u64 {
     sum.digest()
 }
 
+fn file_stamp(path: &Path) -> Option<FileStamp> {
+    let meta = fs::metadata(path).ok()?;
+    Some((meta.modified().ok()?, meta.len()))
+}
+
 impl RecordingCache {
-    /// The file at `name` below `root` at `rate_hz`, and the check sum of its samples.
+    /// The file at `name` below `root` at `rate_hz`, and the check sum of its samples; read again once it was written anew.
     pub(crate) fn open(
         &self,
         root: Option<&str>,
@@ -57,24 +77,34 @@ impl RecordingCache {
         };
         let key = (folder.to_owned(), name.to_owned(), rate_hz);
         let mut known = self.known.lock().unwrap_or_else(PoisonError::into_inner);
-        if let Some(found) = known.get(&key) {
-            return Ok(found.clone());
-        }
         let root = DataRoot::new(folder)?;
         let path = DataRoot::resolve("", name).map_err(|_| HousesError::PathLeavesRoot {
             at: FileLocation::file(name),
             path: name.to_owned(),
             root: root.folder().to_owned(),
         })?;
+        let stamp = file_stamp(&root.folder().join(&path));
+        if let Some(found) = known.get(&key)
+            && stamp.is_some()
+            && found.stamp == stamp
+        {
+            return Ok((found.signal.clone(), found.hash));
+        }
         let bytes = root.read(&path, MAX_FILE_BYTES)?;
         let signal = Recording::decode(name, &bytes)?.signal(rate_hz)?;
-        let found = (signal.clone(), hash_samples(signal.samples()));
-        let kept: usize = known.values().map(|(s, _)| s.samples().len()).sum();
+        let hash = hash_samples(signal.samples());
+        known.remove(&key);
+        let kept: usize = known.values().map(|kept| kept.signal.samples().len()).sum();
         if kept + signal.samples().len() > MOST_KEPT {
             known.clear();
         }
-        known.insert(key, found.clone());
-        Ok(found)
+        let found = LoadedSound {
+            signal: signal.clone(),
+            hash,
+            stamp,
+        };
+        known.insert(key, found);
+        Ok((signal, hash))
     }
 
     /// Decodes every sound file that something in the house plays; once, where all are valid.

@@ -157,8 +157,10 @@ class EngineActions:
         allowed = ("action", "velocity", "pixel", "object", "answer", "question", "say")
         if unknown := sorted(set(fields) - {*allowed}):
             raise ConfigError(f"{at} has {unknown[0]!r}; allowed are {', '.join(allowed)}")
-        if fields.get("action") not in names:
-            found = quoted(fields.get("action"))
+        if "action" not in fields:
+            raise ConfigError(f"{at} has no 'action'; allowed are {', '.join(names)}")
+        if fields["action"] not in names:
+            found = quoted(fields["action"])
             raise ConfigError(f"{at} is {found}; allowed are {', '.join(names)}")
         numbers = np.array([names.index(fields["action"])], np.int64)
         one = (1,)

@@ -5,7 +5,7 @@ from __future__ import annotations
 import contextlib
 from collections.abc import Iterator
 
-from dwell import UsageError
+from dwell import ConfigError, UsageError
 
 
 class EpisodeCalls:
@@ -33,11 +33,20 @@ class EpisodeCalls:
             raise UsageError(f"{call}: no episode has begun; call reset first")
 
     @contextlib.contextmanager
-    def _playing(self, call: str) -> Iterator[None]:
-        """There is no episode to go on with until ``call`` has come to its end."""
-        self._stopped = True
+    def _playing(self, call: str, *, or_stay: bool = False) -> Iterator[None]:
+        """There is no episode to go on with until ``call`` has come to its end.
+
+        Args:
+            call: Its name.
+            or_stay: Whether the episode goes on where the call was refused.
+        """
+        before, self._stopped = self._stopped, True
         with self._calling(call):
-            yield
+            try:
+                yield
+            except ConfigError:
+                self._stopped = before if or_stay else True
+                raise
             self._stopped = False
 
     @contextlib.contextmanager

@@ -16,6 +16,7 @@ from dwell.envs.asking import AskingActions
 from dwell.envs.env_pool import PreparedEnv, add_heads, begun_as_stated
 from dwell.envs.info_keys import GOAL_KEYS
 from dwell.envs.python_tasks import PythonEpisode, PythonTask
+from dwell.envs.saved_world import SavedWorld
 from dwell.envs.sensor_errors import with_sensor
 from dwell.envs.silence import SWS, silence_measures, success_when_silent
 from dwell.envs.spaces import SensorSpace, shareable, specs
@@ -153,6 +154,40 @@ class NativeBatch:
         self.batch.restore(env, snapshot)
         if states is not None:
             self.plays[env].load(states, seed)
+
+    def restore_all(
+        self,
+        saved: Mapping[int, SavedWorld],
+        running: Mapping[int, SavedWorld],
+        move: Callable[[Mapping[int, tuple[int, int | None]]], object],
+    ) -> None:
+        """Restores snapshots of environments, all of them or none.
+
+        Args:
+            saved: The snapshots.
+            running: What the same environments are about now, where they have an episode.
+            move: Puts environments into houses, as ``HouseAssignment.move`` does.
+
+        Raises:
+            ConfigError: The engine refuses one. The environments are in ``running`` then.
+        """
+        try:
+            self._restore_worlds(saved, move)
+        except ConfigError:
+            self._restore_worlds(running, move)
+            raise
+
+    def _restore_worlds(
+        self,
+        saved: Mapping[int, SavedWorld],
+        move: Callable[[Mapping[int, tuple[int, int | None]]], object],
+    ) -> None:
+        move({k: (one.house, None) for k, one in saved.items()})
+        for k, one in saved.items():
+            if self.plays:
+                self.restore(one.world, one.parts, one.seed, env=k)
+            else:
+                self.batch.restore(k, one.world)
 
     def step(self, actions: EngineActions) -> tuple[dict[str, Any], list[Mapping[str, Any]]]:
         """One control step.

@@ -416,7 +416,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             Observations and infos of that moment, of the agents whose episodes went on.
 
         Raises:
-            ConfigError: It is of something else, or was damaged.
+            ConfigError: It is of something else, or was damaged. Nothing has changed then.
         """
         self._refuse_closed()
         self._refuse_call("restore")
@@ -427,7 +427,7 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
             raise ConfigError(f"snapshot refused: {error}") from None
         at = "snapshot refused"
         live, distances = parts_of_agents(at, saved.parts, self._roster.names)
-        with self._playing("restore"):
+        with self._playing("restore", or_stay=True):
             self._runner_of(house).batch.restore(0, saved.world)
             self._house, self._seed, self._np_random = house, seed, saved.stream
             self._distances[:] = distances

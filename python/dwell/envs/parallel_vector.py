@@ -29,6 +29,7 @@ from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import NativeSensors
+from dwell.envs.saved_world import SavedWorld
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.step_recorder import AgentRecorder
 from dwell.envs.vector_reset import VectorReset
@@ -414,9 +415,8 @@ class DwellParallelVectorEnv(EzPickle):
             Observations of that moment, and infos as :meth:`reset` gives.
 
         Raises:
-            ConfigError: They are not one for each, or one is of something else. Nothing has changed
-                then, unless the engine refuses a damaged world: the environments that were given
-                snapshots want a reset afterwards.
+            ConfigError: They are not one for each, or one is of something else or damaged. Nothing
+                has changed then.
         """
         with self._calling("restore"):
             given: object = snapshots
@@ -431,11 +431,19 @@ class DwellParallelVectorEnv(EzPickle):
                 if snapshot is not None
             }
             which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
+            running = {
+                k: SavedWorld(self._places.house(k), seed, self._runner.batch.snapshot(k))
+                for k in rows
+                if (seed := self._seeds[k]) is not None and not self._stopped[k]
+            }
+            worlds = {
+                k: SavedWorld(house, seed, saved.world)
+                for k, (saved, house, seed, *_) in rows.items()
+            }
+            self._runner.restore_all(worlds, running, self._places.move)
             self._stopped[which] = True
-            self._places.move({k: (house, None) for k, (_, house, *_) in rows.items()})
             following: dict[int, tuple[int, int]] = {}
             for k, (saved, _, seed, live, distances) in rows.items():
-                self._runner.batch.restore(k, saved.world)
                 self._seeds[k], self._streams[k], self._over[k] = seed, saved.stream, saved.done
                 self._active[k] = [name in live for name in self._forms.names]
                 self._distances[k] = distances

@@ -398,8 +398,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             Observation and info of that moment.
 
         Raises:
-            ConfigError: It is of something else, or was damaged. Nothing has changed then, unless
-                it is the engine that refuses it: the episode is over then.
+            ConfigError: It is of something else, or was damaged. Nothing has changed then.
         """
         self._refuse_closed()
         self._refuse_call("restore")
@@ -412,7 +411,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         # Nothing changes before it was accepted.
         runner = self._runner_of(house)
         runner.loaded(0, saved.parts)
-        with self._playing("restore"):
+        with self._playing("restore", or_stay=True):
             runner.restore(saved.world, saved.parts, seed)
             self._house, self._seed, self._stated = house, seed, stated
             self._ended, self.np_random = saved.done, saved.stream

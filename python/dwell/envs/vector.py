@@ -42,6 +42,7 @@ from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.python_tasks import RewardChoice, Sensors, TaskChoice, split
+from dwell.envs.saved_world import SavedWorld
 from dwell.envs.sensor_errors import refuse_blind
 from dwell.envs.single import (
     RENDER_CAMERA,
@@ -479,9 +480,8 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             Observations of that moment, and infos as :meth:`reset` gives.
 
         Raises:
-            ConfigError: They are not one for each, or one is of something else. Nothing has changed
-                then, unless the engine refuses a damaged world: the environments that were given
-                snapshots want a reset afterwards.
+            ConfigError: They are not one for each, or one is of something else or damaged. Nothing
+                has changed then.
         """
         self._refuse_closed()
         self._refuse_call("restore")
@@ -503,10 +503,23 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
             self._runner.loaded(k, saved.parts)
         which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
         with self._calling("restore"):
+            running = {
+                k: SavedWorld(
+                    self._places.house(k),
+                    seed,
+                    self._runner.batch.snapshot(k),
+                    self._runner.saved_parts(k),
+                )
+                for k in rows
+                if (seed := self._seeds[k]) is not None and not self._stopped[k]
+            }
+            worlds = {
+                k: SavedWorld(house, seed, saved.world, saved.parts)
+                for k, (saved, house, seed) in rows.items()
+            }
+            self._runner.restore_all(worlds, running, self._places.move)
             self._stopped[which] = True
-            self._places.move({k: (house, None) for k, (_, house, _) in rows.items()})
             for k, (saved, _, seed) in rows.items():
-                self._runner.restore(saved.world, saved.parts, seed, env=k)
                 self._seeds[k], self._streams[k], self._done[k] = seed, saved.stream, saved.done
             self._episode_infos = None
             self._look_ahead(which)

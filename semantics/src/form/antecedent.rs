@@ -427,7 +427,7 @@ impl Resolver {
     /// Puts the last thing of the same noun in place of what a description is other than.
     fn resolve_other(&self, own: &mut Description) {
         let noun = own.noun.clone();
-        let is_room = matches!(noun, Noun::Room(_));
+        let is_any_room = noun == Noun::Room(Noun::ANY_ROOM.to_owned());
         let mut shared: Vec<Modifier> = Vec::new();
         let others = own
             .modifiers
@@ -447,9 +447,8 @@ impl Resolver {
                 );
                 let is_complete = Form::NounPhrase(mention.phrase.clone()).is_free_of_anaphora();
                 // "The floor of the kitchen is gray, but in the other room it is wooden": not in the kitchen.
-                let is_alike = named.noun == noun
-                    || noun == Noun::Room(Noun::ANY_ROOM.to_owned())
-                        && matches!(named.noun, Noun::Room(_));
+                let is_alike =
+                    named.noun == noun || is_any_room && matches!(named.noun, Noun::Room(_));
                 (is_alike && is_one && is_complete).then_some((named, mention))
             });
             if let Some((named, mention)) = named.next() {
@@ -459,7 +458,7 @@ impl Resolver {
                 }
                 let named = mention.with_said.as_ref().unwrap_or(named);
                 *other = named.clone().with_quantifier(Quantifier::The).into();
-            } else if is_room {
+            } else if is_any_room {
                 // "The other room", where none was named: not the one that the listener is in.
                 *other = room_of_listener.clone().into();
             }

@@ -221,6 +221,15 @@ fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<Request
     })
 }
 
+/// Returns whether something else follows the modifier that says where a thing is taken from.
+fn is_described_after_source(object: &Phrase) -> bool {
+    let Phrase::Described(own) = object else {
+        return false;
+    };
+    let mut modifiers = own.modifiers.iter();
+    modifiers.any(|modifier| modifier.predicate == "belongs_to") && modifiers.next().is_some()
+}
+
 pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
     let object = match (parts(object)?.0, phrase(object)?) {
         // "Do not touch the chairs" denies touching any, "every chair" only touching all.
@@ -519,6 +528,8 @@ impl TreeBuilder<'_> {
                 };
                 Tree::apply(function, [])
             }
+            // "Take the cup from the table near the bed" has the table near the bed.
+            RequestStep::Do { object, .. } if is_described_after_source(object) => return None,
             RequestStep::Do { verb, object } => {
                 Tree::apply("do", [self.lexicon_entry(VERB, verb)?, free(object)?])
             }

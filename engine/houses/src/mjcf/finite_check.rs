@@ -71,10 +71,11 @@ pub(super) fn check(node: Node<'_, '_>, at: impl Fn() -> FileLocation) -> Result
                 attribute.value(),
             );
         }
-        let is_bad = |x: f64| x.is_nan() || (finite && x.is_infinite());
+        // Of 32 bits, as all numbers of a house.
+        let is_bad = |x: f32| x.is_nan() || (finite && x.is_infinite());
         let mut words = attribute.value().split_ascii_whitespace();
         if let Some(word) = words.find(|word| word.parse().map_or(true, is_bad)) {
-            return refuse(node, name, &at(), "finite numbers", word);
+            return refuse(node, name, &at(), "finite numbers below 3.4e38", word);
         }
     }
     Ok(())
