@@ -34,7 +34,7 @@ _HAND = {
 _LOOKS = ("face", "point_at", "find", "approach")
 #: Steps after which it gives a way, a look or a reach up; tries of an action of the hand.
 _WALK_STEPS, _LOOK_STEPS, _TRIES = 3000, 60, 3
-#: From this openness on a door is open: it goes no further than its limit, less what its drive leaves.
+#: From this openness on a door is open: its drive leaves a little.
 _OPEN = 0.9
 #: A door that moves by less than this share in each of so many steps has stopped.
 _STILL, _STILL_STEPS = 1e-4, 10

@@ -61,8 +61,8 @@ def test_a_file_that_was_written_anew_is_read_again(tmp_path: Path) -> None:
         """Loudest sample of a click at the head, Pa."""
         write_wav(path, np.full((1, int(1600 * level)), level, np.float32), 16_000)
         world = dwell.World(house, sound_root=tmp_path)
-        place = np.asarray(world.agents()[0]["position"]) + (0.0, 1.5, 0.5)
-        world.play("a.wav", at=place.tolist(), level_db=80.0)
+        x, y, z = world.agents()[0]["position"]
+        world.play("a.wav", at=(x, y + 1.5, z + 0.5), level_db=80.0)
         world.listen(1)
         return sum(
             float(np.abs(world.listen(world.samples_a_step)).sum())
