@@ -252,8 +252,9 @@ class PersonRoutine:
         raise _GivenUpError("no way leads there in time")
 
     def _beside(self, thing: str, gap_m: float = 0.0) -> NDArray[np.float32]:
-        """The place to stand that is nearest to a thing's outline; with ``gap_m`` the one at that distance or
-        more that is nearest to the person.
+        """The place to stand that is nearest to a thing's outline.
+
+        With ``gap_m`` the one nearest to the person that is as far away, or further.
         """
         row = self._world.object(thing)
         here = np.asarray(self._world.agents()[self._agent]["position"])

@@ -432,9 +432,9 @@ class DwellParallelVectorEnv(EzPickle):
             }
             which = np.array([k in rows for k in range(self.num_envs)], np.bool_)
             running = {
-                k: SavedWorld(self._places.house(k), seed, self._runner.batch.snapshot(k))
+                k: SavedWorld(self._places.house(k), self._seeds[k], self._runner.batch.snapshot(k))
                 for k in rows
-                if (seed := self._seeds[k]) is not None and not self._stopped[k]
+                if not self._stopped[k]
             }
             worlds = {
                 k: SavedWorld(house, seed, saved.world)
