@@ -221,13 +221,52 @@ fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<Request
     })
 }
 
-/// Returns whether something else follows the modifier that says where a thing is taken from.
-fn is_described_after_source(object: &Phrase) -> bool {
-    let Phrase::Described(own) = object else {
-        return false;
+/// Returns the phrase of `from` in "take the cup from the table near the bed", where what follows describes it; `None` where that is said of
+/// the cup: after a comma, of a denial or an order.
+fn described_source(from: &Tree) -> Option<Phrase> {
+    fn has_comma(tree: &Tree) -> bool {
+        parts(tree).is_some_and(|(function, arguments)| {
+            function == "with_after_comma" || arguments.iter().any(has_comma)
+        })
+    }
+    let source = phrase(from)?;
+    let is_described = match &source {
+        Phrase::Described(own) => {
+            own.selection.is_none() && own.modifiers.iter().all(|modifier| !modifier.negated)
+        }
+        _ => false,
     };
-    let mut modifiers = own.modifiers.iter();
-    modifiers.any(|modifier| modifier.predicate == "belongs_to") && modifiers.next().is_some()
+    (is_described && !has_comma(from)).then_some(source)
+}
+
+/// Returns the tree of a phrase with commas before what is said of a thing after where it is taken from: "the cup from the table, near the
+/// bed". Without them it would be said of the table.
+fn comma_after_source(tree: Tree) -> Tree {
+    let Tree::Apply {
+        function,
+        arguments,
+    } = tree
+    else {
+        return tree;
+    };
+    let mut arguments = arguments.into_iter();
+    let first = arguments.next().map(comma_after_source);
+    let follows = first
+        .as_ref()
+        .and_then(parts)
+        .is_some_and(|inner| match inner {
+            ("with", [_, added]) => parts(added).is_some_and(|(name, _)| name == "modifier_source"),
+            (name, _) => name == "with_after_comma",
+        });
+    let function = if function == "with" && follows {
+        "with_after_comma".to_owned()
+    } else {
+        function
+    };
+    Tree::Apply {
+        function,
+        arguments: first.into_iter().chain(arguments).collect(),
+    }
 }
 
 pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
@@ -280,7 +319,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
             act_on_modified(&entry_id(verb)?, object, in_room)?
         }
         ("do_from_thing", [verb, object, from]) => {
-            let belongs = Modifier::new("belongs_to", [phrase(from)?]);
+            let belongs = Modifier::new("belongs_to", [described_source(from)?]);
             act_on_modified(&entry_id(verb)?, object, belongs)?
         }
         ("look_in_for", [relation, place, object]) => act_on_modified(
@@ -528,10 +567,9 @@ impl TreeBuilder<'_> {
                 };
                 Tree::apply(function, [])
             }
-            // "Take the cup from the table near the bed" has the table near the bed.
-            RequestStep::Do { object, .. } if is_described_after_source(object) => return None,
             RequestStep::Do { verb, object } => {
-                Tree::apply("do", [self.lexicon_entry(VERB, verb)?, free(object)?])
+                let object = comma_after_source(free(object)?);
+                Tree::apply("do", [self.lexicon_entry(VERB, verb)?, object])
             }
             RequestStep::DoNot { verb, object } => {
                 Tree::apply("do_not", [self.lexicon_entry(VERB, verb)?, free(object)?])
