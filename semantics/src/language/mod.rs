@@ -23,6 +23,7 @@ mod rooms;
 mod say;
 mod sentences;
 mod sets;
+mod sources;
 mod step_groups;
 mod to_tree;
 mod verb_phrases;

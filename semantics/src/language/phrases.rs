@@ -96,13 +96,14 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             };
             Some(description.with_quantifier(Quantifier::The).into())
         }
-        ("every_piece", [noun]) => quantified_piece(Quantifier::Every, noun, None),
-        ("every_piece_here", [noun]) => quantified(
-            Quantifier::Every,
-            places::structure(noun, Some(places::in_room_of_listener()))?,
-        ),
-        ("every_piece_of", [noun, place]) => quantified_piece(Quantifier::Every, noun, Some(place)),
-        ("no_piece_of", [noun, place]) => quantified_piece(Quantifier::No, noun, Some(place)),
+        ("every_piece", [noun]) => places::quantified_piece(Quantifier::Every, noun, None),
+        ("every_piece_here", [noun]) => places::every_piece_here(noun),
+        ("every_piece_of", [noun, place]) => {
+            places::quantified_piece(Quantifier::Every, noun, Some(place))
+        }
+        ("no_piece_of", [noun, place]) => {
+            places::quantified_piece(Quantifier::No, noun, Some(place))
+        }
         ("closer_one" | "whichever_closer" | "i_whichever_closer", [noun, reference]) => {
             let reference = Some(phrase(reference)?);
             Some(questions::with_selection(nominal(noun)?, "closest_to", reference).into())
@@ -322,22 +323,6 @@ pub(super) fn each_of(tree: &Tree) -> Option<Phrase> {
             Some(own.with_quantifier(Quantifier::Every).into())
         }
         (_, other) => Some(other),
-    }
-}
-
-/// Every piece of the building of a kind, or none of them.
-fn quantified_piece(quantifier: Quantifier, noun: &Tree, place: Option<&Tree>) -> Option<Phrase> {
-    let there = match place {
-        Some(place) => Some(Modifier::new("in_room", [room(place)?])),
-        None => None,
-    };
-    quantified(quantifier, places::structure(noun, there)?)
-}
-
-fn quantified(quantifier: Quantifier, phrase: Phrase) -> Option<Phrase> {
-    match phrase {
-        Phrase::Described(own) => Some(own.with_quantifier(quantifier).into()),
-        _ => None,
     }
 }
 

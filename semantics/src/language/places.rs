@@ -32,12 +32,35 @@ pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phras
     Some(own.into())
 }
 
-/// Of what is in the room that the listener is in.
-pub(super) fn in_room_of_listener() -> Modifier {
+/// Every piece of a kind in the room that the listener is in.
+pub(super) fn every_piece_here(noun: &Tree) -> Option<Phrase> {
     let room = Noun::Room(Noun::ANY_ROOM.to_owned());
     let with = Modifier::new("room_contains", [Phrase::Listener]);
     let here = Description::new(Quantifier::The, room).with_modifier(with);
-    Modifier::new("in_room", [here.into()])
+    quantified(
+        Quantifier::Every,
+        structure(noun, Some(Modifier::new("in_room", [here.into()])))?,
+    )
+}
+
+/// Every piece of the building of a kind, or none of them.
+pub(super) fn quantified_piece(
+    quantifier: Quantifier,
+    noun: &Tree,
+    place: Option<&Tree>,
+) -> Option<Phrase> {
+    let there = match place {
+        Some(place) => Some(Modifier::new("in_room", [room(place)?])),
+        None => None,
+    };
+    quantified(quantifier, structure(noun, there)?)
+}
+
+fn quantified(quantifier: Quantifier, phrase: Phrase) -> Option<Phrase> {
+    match phrase {
+        Phrase::Described(own) => Some(own.with_quantifier(quantifier).into()),
+        _ => None,
+    }
 }
 
 /// A piece of the building with its colour and substance: "the white brick wall".

@@ -3,9 +3,9 @@
 use super::from_tree::{entry_id, parts, place_of, possibly_negated_clause, room, subjects};
 use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
-use super::places;
 use super::step_groups::{before_step, coordinated_steps, wait_after};
 use super::to_tree::{PhrasePosition, TreeBuilder};
+use super::{places, sources};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
     topic_of,
@@ -221,54 +221,6 @@ fn act_on_modified(verb: &str, object: &Tree, added: Modifier) -> Option<Request
     })
 }
 
-/// Returns the phrase of `from` in "take the cup from the table near the bed", where what follows describes it; `None` where that is said of
-/// the cup: after a comma, of a denial or an order.
-fn described_source(from: &Tree) -> Option<Phrase> {
-    fn has_comma(tree: &Tree) -> bool {
-        parts(tree).is_some_and(|(function, arguments)| {
-            function == "with_after_comma" || arguments.iter().any(has_comma)
-        })
-    }
-    let source = phrase(from)?;
-    let is_described = match &source {
-        Phrase::Described(own) => {
-            own.selection.is_none() && own.modifiers.iter().all(|modifier| !modifier.negated)
-        }
-        _ => false,
-    };
-    (is_described && !has_comma(from)).then_some(source)
-}
-
-/// Returns the tree of a phrase with commas before what is said of a thing after where it is taken from: "the cup from the table, near the
-/// bed". Without them it would be said of the table.
-fn comma_after_source(tree: Tree) -> Tree {
-    let Tree::Apply {
-        function,
-        arguments,
-    } = tree
-    else {
-        return tree;
-    };
-    let mut arguments = arguments.into_iter();
-    let first = arguments.next().map(comma_after_source);
-    let follows = first
-        .as_ref()
-        .and_then(parts)
-        .is_some_and(|inner| match inner {
-            ("with", [_, added]) => parts(added).is_some_and(|(name, _)| name == "modifier_source"),
-            (name, _) => name == "with_after_comma",
-        });
-    let function = if function == "with" && follows {
-        "with_after_comma".to_owned()
-    } else {
-        function
-    };
-    Tree::Apply {
-        function,
-        arguments: first.into_iter().chain(arguments).collect(),
-    }
-}
-
 pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
     let object = match (parts(object)?.0, phrase(object)?) {
         // "Do not touch the chairs" denies touching any, "every chair" only touching all.
@@ -319,7 +271,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
             act_on_modified(&entry_id(verb)?, object, in_room)?
         }
         ("do_from_thing", [verb, object, from]) => {
-            let belongs = Modifier::new("belongs_to", [described_source(from)?]);
+            let belongs = Modifier::new("belongs_to", [sources::described_source(from)?]);
             act_on_modified(&entry_id(verb)?, object, belongs)?
         }
         ("look_in_for", [relation, place, object]) => act_on_modified(
@@ -568,7 +520,7 @@ impl TreeBuilder<'_> {
                 Tree::apply(function, [])
             }
             RequestStep::Do { verb, object } => {
-                let object = comma_after_source(free(object)?);
+                let object = sources::comma_after_source(free(object)?);
                 Tree::apply("do", [self.lexicon_entry(VERB, verb)?, object])
             }
             RequestStep::DoNot { verb, object } => {
