@@ -41,11 +41,6 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("put_two", [one, first, to, other, second, there]) => {
             vec![put(one, first, to)?, put(other, second, there)?]
         }
-        ("step_facing", [first, faced]) => {
-            // "Take a chair from the table, facing the wall" describes the chair.
-            let first = step(first)?;
-            is_way_to_bare_place(&first).then_some(vec![first, act("face", faced)?])?
-        }
         ("without_touching", [first, object]) => {
             vec![step(first)?, refrain("touch", object)?]
         }
@@ -106,20 +101,6 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         _ => return None,
     })
-}
-
-fn is_way_to_bare_place(step: &RequestStep) -> bool {
-    let is_bare = |place: &Phrase| match place {
-        Phrase::Described(own) => own.modifiers.is_empty() && own.selection.is_none(),
-        Phrase::Pronoun => true,
-        _ => false,
-    };
-    match step {
-        RequestStep::GoTo(room) => is_bare(room),
-        RequestStep::Do { verb, object } => verb == "approach" && is_bare(object),
-        RequestStep::Put { object, to, .. } => *object == Phrase::Listener && is_bare(to),
-        _ => false,
-    }
 }
 
 /// "The cabinet on the right of the window, not the one on the left": of the window, too.
