@@ -23,7 +23,6 @@ mod rooms;
 mod say;
 mod sentences;
 mod sets;
-mod sources;
 mod step_groups;
 mod to_tree;
 mod verb_phrases;

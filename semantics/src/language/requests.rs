@@ -3,9 +3,9 @@
 use super::from_tree::{entry_id, parts, place_of, possibly_negated_clause, room, subjects};
 use super::lexicon::{RELATION, VERB};
 use super::phrases::{between_two, phrase};
+use super::places;
 use super::step_groups::{before_step, coordinated_steps, wait_after};
 use super::to_tree::{PhrasePosition, TreeBuilder};
-use super::{places, sources};
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection,
     topic_of,
@@ -270,10 +270,6 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
             let in_room = Modifier::new("in_room", [room(from)?]);
             act_on_modified(&entry_id(verb)?, object, in_room)?
         }
-        ("do_from_thing", [verb, object, from]) => {
-            let belongs = Modifier::new("belongs_to", [sources::described_source(from)?]);
-            act_on_modified(&entry_id(verb)?, object, belongs)?
-        }
         ("look_in_for", [relation, place, object]) => act_on_modified(
             "find",
             object,
@@ -520,8 +516,7 @@ impl TreeBuilder<'_> {
                 Tree::apply(function, [])
             }
             RequestStep::Do { verb, object } => {
-                let object = sources::comma_after_source(free(object)?);
-                Tree::apply("do", [self.lexicon_entry(VERB, verb)?, object])
+                Tree::apply("do", [self.lexicon_entry(VERB, verb)?, free(object)?])
             }
             RequestStep::DoNot { verb, object } => {
                 Tree::apply("do_not", [self.lexicon_entry(VERB, verb)?, free(object)?])
