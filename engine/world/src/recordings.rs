@@ -1,4 +1,4 @@
-//! Sound files, read once and shared by all worlds over a house.
+//! Sound files, read once until they are written anew, and shared by all worlds over a house.
 
 use crate::error::WorldError;
 use dwell_acoustics::recordings::MAX_FILE_BYTES;

@@ -433,9 +433,6 @@ impl Resolver {
             .modifiers
             .iter_mut()
             .flat_map(|modifier| &mut modifier.arguments);
-        let room_of_listener =
-            Description::new(Quantifier::The, Noun::Room(Noun::ANY_ROOM.to_owned()))
-                .with_modifier(Modifier::new("room_contains", [Phrase::Listener]));
         for other in others.filter(|other| **other == Phrase::NamedBefore) {
             let mut named = self.mentions.iter().rev().filter_map(|mention| {
                 let Phrase::Described(named) = &mention.phrase else {
@@ -460,7 +457,7 @@ impl Resolver {
                 *other = named.clone().with_quantifier(Quantifier::The).into();
             } else if is_any_room {
                 // "The other room", where none was named: not the one that the listener is in.
-                *other = room_of_listener.clone().into();
+                *other = Description::room_of_listener().into();
             }
         }
         if own.modifiers.len() == 1 {

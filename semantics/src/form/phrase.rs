@@ -113,6 +113,13 @@ pub struct Description {
 }
 
 impl Description {
+    /// The room that the listener is in.
+    pub(crate) fn room_of_listener() -> Self {
+        let room = Noun::Room(Noun::ANY_ROOM.to_owned());
+        let with = Modifier::new("room_contains", [Phrase::Listener]);
+        Self::new(Quantifier::The, room).with_modifier(with)
+    }
+
     /// Returns a description by a noun alone.
     pub fn new(quantifier: Quantifier, noun: Noun) -> Self {
         Self {

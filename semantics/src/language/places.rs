@@ -34,9 +34,7 @@ pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phras
 
 /// Every piece of a kind in the room that the listener is in.
 pub(super) fn every_piece_here(noun: &Tree) -> Option<Phrase> {
-    let room = Noun::Room(Noun::ANY_ROOM.to_owned());
-    let with = Modifier::new("room_contains", [Phrase::Listener]);
-    let here = Description::new(Quantifier::The, room).with_modifier(with);
+    let here = Description::room_of_listener();
     quantified(
         Quantifier::Every,
         structure(noun, Some(Modifier::new("in_room", [here.into()])))?,
