@@ -131,12 +131,14 @@ def test_every_sensor_stands_in_the_table_with_its_space(pages: ModuleType) -> N
     sensors = {sensor["name"]: sensor["about"] for sensor in _native.sensors()}
     assert list(rows) == list(sensors)
     spaces = {}
-    named: dict[str, list[str]] = {}
+    named: dict[tuple[str, bool], list[str]] = {}
     for row in _native.sensors():
         (task, *_) = row["goal_tasks"] or ["InstructionFollowing"]
-        named.setdefault(task, []).append(row["name"])
-    for task, names in named.items():
-        env = gymnasium.make(f"dwell/{task}-v0", sensors=names)
+        named.setdefault((task, row["name"] == "wheel_odometry"), []).append(row["name"])
+    on_wheels = {"agents": [{"locomotion": "differential_drive"}]}
+    for (task, needs_wheels), names in named.items():
+        world = on_wheels if needs_wheels else None
+        env = gymnasium.make(f"dwell/{task}-v0", sensors=names, world=world)
         assert isinstance(env.observation_space, gymnasium.spaces.Dict)
         spaces |= env.observation_space.spaces
         env.close()
