@@ -72,7 +72,7 @@ impl RoomDoorway {
 fn is_open_air(rays: &RayScene, eye: Vec3, out: Vec3) -> bool {
     let free = |direction: Vec3| {
         let hit = rays.closest(&Ray::new(eye, direction), RayMask::EYE);
-        hit.is_none_or(|hit| !matches!(rays.surface(&hit).owner, SurfaceOwner::Structure(_)))
+        hit.is_none_or(|hit| !matches!(rays.owner_and_material(&hit).0, SurfaceOwner::Structure(_)))
     };
     let aside = Vec3::Y.cross(out);
     free(Vec3::Y)

@@ -218,13 +218,13 @@ fn visible_wall_areas(rays: &RayScene, points: &[Vec3]) -> BTreeMap<MaterialId, 
             let (x, z) = math::sin_cos(turn);
             let slope = SLOPES[k % SLOPES.len()];
             let hit = rays.closest(&Ray::new(*eye, Vec3::new(x, slope, z)), RayMask::EYE);
-            let Some(surface) = hit.map(|hit| rays.surface(&hit)) else {
+            let Some((owner, material)) = hit.map(|hit| rays.owner_and_material(&hit)) else {
                 continue;
             };
-            if let SurfaceOwner::Structure(piece) = surface.owner
+            if let SurfaceOwner::Structure(piece) = owner
                 && rays.house().structure[piece].kind == StructureKind::Wall
             {
-                *areas.entry(surface.material).or_insert(0.0) += 1.0;
+                *areas.entry(material).or_insert(0.0) += 1.0;
             }
         }
     }

@@ -19,6 +19,8 @@ const SLOPE: f32 = 0.35;
 const EYES_M: f32 = 1.7;
 /// Number of rays that must meet a thing for it to count as seen.
 const LEAST_HITS: usize = 12;
+/// Width by which a thing's box grows, so that rounding hides none of its surface, m.
+const ROUNDING_M: f32 = 1e-3;
 /// Number of other boxes beyond which a thing that lies in them lies in a heap.
 const MOST_AROUND: usize = 64;
 
@@ -68,6 +70,7 @@ fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId
             house.rooms[room].floor_y
         });
     let (middle, half) = (bounds.center(), bounds.size() * 0.5);
+    let within = bounds.grown(ROUNDING_M);
     let rise = if middle.y > floor_y + EYES_M {
         SLOPE
     } else {
@@ -91,24 +94,24 @@ fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId
                 + right * (reach[0] * place(0.754_877_7))
                 + up * (reach[1] * place(0.569_840_3))
                 - along * (reach[2] + START_M);
-            let ray = Ray::new(from, along).with_range(0.0, 2.0 * reach[2] + START_M);
+            // What lies beyond the box is not the thing.
+            let Some(exit_m) = exit_distance(&within, from, along) else {
+                continue;
+            };
+            let ray = Ray::new(from, along).with_range(0.0, exit_m);
             let Some(hit) = rays.closest(&ray, RayMask::EYE) else {
                 continue;
             };
-            let surface = rays.surface(&hit);
-            let SurfaceOwner::Part(part) = surface.owner else {
+            let (SurfaceOwner::Part(part), material) = rays.owner_and_material(&hit) else {
                 continue;
             };
             if house.parts[part].object != id {
                 continue;
             }
             hits += 1;
-            match areas
-                .iter_mut()
-                .find(|(known, _)| *known == surface.material)
-            {
+            match areas.iter_mut().find(|(known, _)| *known == material) {
                 Some((_, sum)) => *sum += area_m2,
-                None => areas.push((surface.material, area_m2)),
+                None => areas.push((material, area_m2)),
             }
         }
     }
@@ -116,4 +119,14 @@ fn visible_area(rays: &RayScene, bounds: &Aabb, id: ObjectId) -> Vec<(MaterialId
         areas.clear();
     }
     areas
+}
+
+/// The distance at which a ray leaves a box that lies before it; `None` for a ray that misses it.
+///
+/// # Source
+/// T. L. Kay, J. T. Kajiya, Computer Graphics 20, 269 (1986): slabs.
+fn exit_distance(bounds: &Aabb, from: Vec3, along: Vec3) -> Option<f32> {
+    let (a, b) = ((bounds.min - from) / along, (bounds.max - from) / along);
+    let (enter, exit) = (a.min(b).max_element(), a.max(b).min_element());
+    (enter <= exit).then_some(exit)
 }

@@ -168,14 +168,12 @@ fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
         let mut size = 0;
         for _ in 0..ROUNDS {
             let lab = Oklab::from_linear(middle);
-            let near = || {
-                let near = shades.iter().filter(|(_, s)| s.distance(lab) <= SHADE);
-                near.map(|(linear, _)| *linear)
-            };
-            size = near().count();
-            let Some(moved) = mean(near()) else {
+            let near = shades.iter().filter(|(_, s)| s.distance(lab) <= SHADE);
+            let (moved, count) = mean(near.map(|(linear, _)| *linear));
+            size = count;
+            if size == 0 || moved == middle {
                 break;
-            };
+            }
             middle = moved;
         }
         if size > best.1 {
@@ -194,15 +192,16 @@ fn common_factor(p: usize, q: usize) -> usize {
     if q == 0 { p } else { common_factor(q, p % q) }
 }
 
-fn mean(colors: impl Iterator<Item = [f32; 3]>) -> Option<[f32; 3]> {
-    let (mut sum, mut count) = ([0.0_f32; 3], 0.0_f32);
+/// The mean of colours and their number; zero of none.
+fn mean(colors: impl Iterator<Item = [f32; 3]>) -> ([f32; 3], usize) {
+    let (mut sum, mut count) = ([0.0_f32; 3], 0);
     for color in colors {
         for (total, value) in sum.iter_mut().zip(color) {
             *total += value;
         }
-        count += 1.0;
+        count += 1;
     }
-    (count > 0.0).then(|| sum.map(|total| total / count))
+    (sum.map(|total| total / count.max(1) as f32), count)
 }
 
 /// Linear light of every byte of an image.

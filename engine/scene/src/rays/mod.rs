@@ -190,6 +190,20 @@ impl RayScene {
         }
     }
 
+    /// Returns the owner and the material of the surface of a hit; cheaper than [`Self::surface`], which also finds its normal.
+    pub fn owner_and_material(&self, hit: &Hit) -> (SurfaceOwner, MaterialId) {
+        let geometry = self.house.geometry();
+        let (placed, triangle) = if let Some(instance) = hit.instance {
+            let part = self.part_of_instance(instance);
+            (geometry.placed_part(part), hit.triangle)
+        } else {
+            let source = geometry.static_triangles[hit.triangle as usize];
+            (&geometry.placed[source.placed as usize], source.triangle)
+        };
+        let slot = self.house.meshes[placed.mesh].slot(triangle as usize);
+        (placed.owner, self.house.slot_material(placed.owner, slot))
+    }
+
     /// The texture coordinates at the hit; zero where the mesh has none.
     pub fn uv(&self, hit: &Hit) -> Vec2 {
         let (placed, triangle, _) = self.placed(hit);
@@ -269,6 +283,8 @@ mod tests {
         let surface = scene.surface(&hit);
         assert!((hit.distance_m - 5.0).abs() < 1e-5);
         assert_eq!(house.materials[surface.material].name, "east");
+        let owned = (surface.owner, surface.material);
+        assert_eq!(scene.owner_and_material(&hit), owned);
         assert!((surface.normal - Vec3::NEG_X).length() < 1e-6);
         assert!(
             scene.occluded(&ray, RayMask::ALL)
