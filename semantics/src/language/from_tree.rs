@@ -421,10 +421,6 @@ pub(super) fn quality_of(tree: &Tree) -> Option<Quality> {
 }
 
 pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
-    let any_room = || {
-        let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
-        Phrase::from(Description::new(Quantifier::Some, noun))
-    };
     let of = |predicate: &str, phrase| (predicate.to_owned(), phrase);
     Some(match parts(tree)? {
         ("place", [room]) => of("in_room", self::room(room)?),
@@ -451,9 +447,9 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
         ("destination_end", [room]) => of("at_end_of", self::room(room)?),
         ("destination_middle", [room]) => of("in_middle_of", self::room(room)?),
         ("destination_corner_of", [room]) => of("in_corner_of", self::room(room)?),
-        ("place_end", []) => of("at_end_of", any_room()),
-        ("place_corner" | "destination_corner", []) => of("in_corner_of", any_room()),
-        ("place_middle", []) => of("in_middle_of", any_room()),
+        ("place_end", []) => of("at_end_of", places::any_room()),
+        ("place_corner" | "destination_corner", []) => of("in_corner_of", places::any_room()),
+        ("place_middle", []) => of("in_middle_of", places::any_room()),
         ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
         _ => return None,
     })

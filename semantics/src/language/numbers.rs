@@ -86,16 +86,15 @@ pub(super) fn equative(one: &Tree, other: &Tree) -> Option<Clause> {
 
 /// The clauses of "two or three chairs".
 pub(super) fn alternative_count_clauses(
-    one: &Tree,
-    other: &Tree,
-    what: &Tree,
+    counts: [&Tree; 2],
+    what: &Description,
+    clause: impl Fn(Phrase) -> Clause,
 ) -> Option<Vec<Clause>> {
     let exactly = |count: &Tree| {
-        let what = nominal(what)?;
-        let what = what.with_quantifier(Quantifier::Exactly(number(count)?));
-        Some(Clause::Exists(Phrase::from(what)))
+        let quantifier = Quantifier::Exactly(number(count)?);
+        Some(clause(what.clone().with_quantifier(quantifier).into()))
     };
-    Some(vec![exactly(one)?, exactly(other)?])
+    counts.into_iter().map(exactly).collect()
 }
 
 impl TreeBuilder<'_> {

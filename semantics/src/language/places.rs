@@ -25,6 +25,12 @@ fn mount_nouns() -> [(&'static str, Noun); 3] {
     ]
 }
 
+/// Any room: that of "in the corner".
+pub(super) fn any_room() -> Phrase {
+    let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
+    Description::new(Quantifier::Some, noun).into()
+}
+
 /// A piece of the building: any of its kind, or of those that a modifier holds of.
 pub(super) fn structure(noun: &Tree, modifier: Option<Modifier>) -> Option<Phrase> {
     let mut own = structure_description(noun)?;

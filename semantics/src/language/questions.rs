@@ -38,8 +38,25 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             numbers::comparative_by_modifier(what, one, other)?,
             numbers::comparative_by_modifier(what, other, one)?,
         ]),
-        ("which_count", [one, other, what]) => {
-            Question::Alternatives(numbers::alternative_count_clauses(one, other, what)?)
+        ("which_count", [one, other, what]) => Question::Alternatives(
+            numbers::alternative_count_clauses([one, other], &nominal(what)?, Clause::Exists)?,
+        ),
+        ("which_count_of", [one, what, other, added]) => {
+            let what = nominal(what)?.with_modifier(modifier(added)?);
+            Question::Alternatives(numbers::alternative_count_clauses(
+                [one, other],
+                &what,
+                Clause::Exists,
+            )?)
+        }
+        ("has_count_or", [subject, one, what, other]) => {
+            let subject = phrase(subject)?;
+            let has = |what| atomic_clause("has", vec![subject.clone(), what]);
+            Question::Alternatives(numbers::alternative_count_clauses(
+                [one, other],
+                &nominal(what)?,
+                has,
+            )?)
         }
         ("which_verb", [kind, verb, object]) => which(
             Some(nominal(kind)?),

@@ -240,6 +240,9 @@ impl TreeBuilder<'_> {
 
     /// A place within a room: "in the corner of the kitchen".
     pub(super) fn place_in_room(&self, predicate: &str, place: &Phrase) -> Option<Tree> {
+        if predicate == "in_corner_of" && *place == places::any_room() {
+            return Some(Tree::apply("place_corner", []));
+        }
         let word = self.lexicon_entry(ROOM_SPOT, predicate)?;
         Some(Tree::apply("place_spot", [word, self.room(place)?]))
     }

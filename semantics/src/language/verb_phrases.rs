@@ -72,7 +72,7 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
             affirmed(Predication::Relation(places::passage_from_tree(passage)?))
         }
         ("vp_side_corner", [side]) if parts(side)?.0 != "flank_ahead" => {
-            let mut all = relation("in_corner_of", [any_room()]);
+            let mut all = relation("in_corner_of", [places::any_room()]);
             all.extend(affirmed(Predication::Relation(places::side_from_tree(
                 side,
             )?)));
@@ -233,11 +233,6 @@ fn negate_single(mut all: PredicationList) -> Option<PredicationList> {
 
 fn any_thing() -> Phrase {
     let noun = Noun::Object(Noun::ANY_OBJECT.to_owned());
-    Description::new(Quantifier::Some, noun).into()
-}
-
-fn any_room() -> Phrase {
-    let noun = Noun::Room(Noun::ANY_ROOM.to_owned());
     Description::new(Quantifier::Some, noun).into()
 }
 
