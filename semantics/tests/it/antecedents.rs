@@ -254,7 +254,7 @@ fn a_step_after_a_fetch_says_where_the_thing_goes() {
         ),
         (
             "Push the basket into the corner.",
-            "Put the basket in the corner of a room.",
+            "Put the basket in the corner.",
         ),
         (
             "Push the basket in the corner.",
