@@ -468,6 +468,17 @@ def file_name(name: str, value: object) -> str:
     return value
 
 
+def function_or_none(name: str, value: object) -> Callable[..., Any] | None:
+    """A function, or nothing.
+
+    Raises:
+        ConfigError: It is something else.
+    """
+    if value is not None and not callable(value):
+        raise ConfigError(f"{name} is {quoted(value)}; expected a function or None")
+    return value
+
+
 def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any JSON value
     """``value`` as JSON knows it; ``at``: its place, for the error."""
     if depth > _MAX_DEPTH:
@@ -475,6 +486,8 @@ def _plain(at: str, value: object, depth: int = 0) -> Any:  # noqa: ANN401 - any
             f"{at[:60]}… is nested too deep; allowed are {_MAX_DEPTH} lists and mappings in "
             "each other"
         )
+    if isinstance(value, np.ma.MaskedArray) and np.ma.is_masked(value):
+        raise ConfigError(f"{at} has masked elements; give what stands for them")
     if isinstance(value, np.ndarray | np.generic):
         value = value.tolist()
     if isinstance(value, Mapping):

@@ -8,10 +8,13 @@ from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import Any
 
+import numpy as np
+
 from dwell import ConfigError, _native
 from dwell.arguments import (
     file_path,
     finite_number,
+    function_or_none,
     integer_in_range,
     openable_file,
     quoted,
@@ -60,14 +63,18 @@ def calibrate(
     """
     tables = sequence_items("peers", peers, "expected paths of tables")
     names = [openable_file(f"peers[{k}]", peer) for k, peer in enumerate(tables)]
-    if progress is not None and not callable(progress):
-        raise ConfigError(f"progress is {quoted(progress)}; expected a function or None")
+    told_of = function_or_none("progress", progress)
+
+    def tell(fraction: float, sentence: str) -> bool:
+        answer = told_of(fraction, sentence) if told_of else None
+        return not (isinstance(answer, bool | np.bool_) and not answer)
+
     named = None if house is None else text("house", house)
     bundle = file_path("measured", measured)
     if names:
         _refuse_peers(bundle, names)
     budget = None if budget_s is None else finite_number("budget_s", budget_s)
-    told = _native.calibrate(bundle, named, progress, names, budget)
+    told = _native.calibrate(bundle, named, tell if told_of else None, names, budget)
     report: dict[str, Any] = json.loads(told)
     return report
 

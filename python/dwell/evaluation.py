@@ -14,7 +14,7 @@ from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from typing import Any
 
 from dwell import ConfigError, MeasuredDataError, __version__, _native, arguments
-from dwell.arguments import integer_in_range, mapping, plain_settings, quoted
+from dwell.arguments import function_or_none, integer_in_range, mapping, plain_settings, quoted
 from dwell.episode_maker import EpisodeMaker, whole_settings
 from dwell.episodes import Episode, EpisodeFile, Header, read, task_of
 from dwell.evaluation_summary import summary
@@ -30,6 +30,10 @@ from dwell.schemas import settings
 _FORMAT, _VERSION = "dwell-evaluation", 1
 Sensors = Sequence[str] | Mapping[str, Mapping[str, Any]]
 Progress = Callable[[float, str], None]
+
+
+def _tell_nobody(fraction: float, what: str) -> None:
+    pass
 
 
 @dataclasses.dataclass(frozen=True)
@@ -242,7 +246,7 @@ def evaluate(
     max_steps: int | None = None,
     threads: int | None = None,
     workers: int = 1,
-    progress: Progress = lambda fraction, what: None,
+    progress: Progress | None = None,
 ) -> dict[str, Any]:
     """Plays episodes with a policy.
 
@@ -288,6 +292,7 @@ def evaluate(
     """
     from dwell.evaluation_workers import played_rows
 
+    tell = function_or_none("progress", progress) or _tell_nobody
     which = episode_set(episodes, task, houses, count, seed, task_settings)
     job = Evaluation(
         policy,
@@ -302,7 +307,7 @@ def evaluate(
     rows = []
     for row in played_rows(job, job.episodes, workers=workers):
         rows.append(row)
-        progress(len(rows) / len(job.episodes), row["scene_id"])
+        tell(len(rows) / len(job.episodes), row["scene_id"])
     return result_of(job.about, rows)
 
 
@@ -430,7 +435,7 @@ def differences(
     *,
     policy: object = None,
     episodes: str | os.PathLike[str] | Sequence[str | os.PathLike[str]] | None = None,
-    progress: Progress = lambda fraction, what: None,
+    progress: Progress | None = None,
 ) -> list[str]:
     """What of a result does not hold when its actions are played again, a sentence each.
 
@@ -457,4 +462,5 @@ def differences(
 
     row = result if isinstance(result, Mapping) else read_result(result)
     files = None if episodes is None else episode_set(episodes, None, None, None)
-    return compared(row, progress, policy=policy, files=files)
+    tell = function_or_none("progress", progress) or _tell_nobody
+    return compared(row, tell, policy=policy, files=files)

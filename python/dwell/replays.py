@@ -204,6 +204,9 @@ class Replay:
         try:
             for name, check in _CHECKS.items():
                 check(name, getattr(self, name))
+            for name in ("actions", "hashes"):
+                if not isinstance(given := getattr(self, name), Sequence):
+                    raise ConfigError(f"{name} is {quoted(given)}; expected a list")
             if self.stated is not None:
                 checked_episode("stated", self.stated)
             if self.sums is not None:

@@ -84,10 +84,17 @@ class SofaReader:
         holder, kind = name, self.file.text(name, "Type")
         if kind is None and like is not None and self.has(like):
             holder, kind = like, self.file.text(like, "Type")
-        kind = (kind or "cartesian").lower()
         units = [
             part.strip().lower() for part in (self.file.text(holder, "Units") or "").split(",")
         ]
+        if kind is None and units[0] in _ANGLES:
+            kind = "spherical"
+        elif kind is None and units == [""] and name == "SourcePosition":
+            # Conventions differ in what they suppose.
+            raise self.fault(
+                name, "Type and Units are missing; allowed are 'cartesian' and 'spherical'"
+            )
+        kind = (kind or "cartesian").lower()
         if kind == "cartesian":
             if units != [""] and not set(units) <= _LENGTHS:
                 raise self.fault(name, f"Units is {', '.join(units)!r}; allowed is 'metre'")

@@ -118,6 +118,8 @@ def read_wav(
         form = int.from_bytes(layout[24:26], "little")
     kinds = {(_FLOAT, 32): "<f4", (_FLOAT, 64): "<f8"}
     kinds |= {(_PCM, 16): "<i2", (_PCM, 24): "<i4", (_PCM, 32): "<i4"}
+    if not rate_hz:
+        raise MeasuredDataError(f"{path}: its head says 0 samples a second; expected 1 or more")
     if (form, bits) not in kinds or not channels:
         raise MeasuredDataError(
             f"{path}: {channels} channels of format {form} with {bits} bits; "
@@ -138,7 +140,16 @@ def read_wav(
         frames = (packed.view(kind) >> 8).reshape(-1, channels)
     else:
         frames = np.frombuffer(data, kind).reshape(-1, channels)
-    return (frames.T * np.float64(scale)).astype(np.float32), rate_hz
+    scaled = frames.T * np.float64(scale)
+    with np.errstate(over="ignore"):
+        sound = scaled.astype(np.float32)
+    if (lost := np.isinf(sound) & np.isfinite(scaled)).any():
+        channel, sample = (int(k) for k in np.argwhere(lost)[0])
+        raise MeasuredDataError(
+            f"{path}: sample {sample} of channel {channel} is {scaled[channel, sample]:g}; allowed "
+            "are numbers up to 3.4e+38 either way"
+        )
+    return sound, rate_hz
 
 
 def is_whole_wav(path: str | os.PathLike[str]) -> bool:
@@ -168,6 +179,12 @@ def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
     chunks: dict[bytes, bytes] = {}
     at = 12
     while at + 8 <= len(file):
+        if chunks.get(b"data") == b"" and not all(32 <= c < 127 for c in file[at : at + 4]):
+            raise MeasuredDataError(
+                f"{name}: its head says that there are 0 bytes of sound, and {len(file) - at} "
+                "follow, as of a recording that was not finished: write the length into the head, "
+                "as most sound editors do on saving"
+            )
         length = int.from_bytes(file[at + 4 : at + 8], "little")
         kind, content = file[at : at + 4], file[at + 8 : at + 8 + length]
         if len(content) < length and kind in (b"fmt ", b"data") and kind not in chunks:

@@ -10,6 +10,7 @@ import numpy as np
 import pytest
 
 import dwell
+import dwell.evaluation
 import dwell.house_list
 import dwell.measures
 from dwell import plans, sound_maps
@@ -436,6 +437,11 @@ CALLS = [
     ),
     ("dwell.calibrate(None)", "measured is None; expected text or a path"),
     ('dwell.calibrate("x", progress=5)', "progress is 5; expected a function or None"),
+    (
+        'dwell.evaluation.evaluate("stop", task="Free", progress=5)',
+        "progress is 5; expected a function or None",
+    ),
+    ("dwell.House.generate(1, area_m2=np.ma.masked)", "area_m2 has masked elements; give what"),
     ("dwell.Replay.read(None)", "path is None; expected text or a path"),
     ('dwell.Replay.read(b"x")', "path is b'x'; expected text"),
     ('REPLAY.write("x.replay")', "replay: config: no JSON: line 1 column 1"),

@@ -250,6 +250,11 @@ def _attribute(name: str, value: str, of: str | None = None) -> Change:
     return changed
 
 
+def _untold(file: File) -> None:
+    for name in ("Type", "Units"):
+        file["SourcePosition"].attrs.pop(name)
+
+
 def _spoil(file: File) -> None:
     file["Data.IR"][3, 1, 7] = np.nan
 
@@ -277,6 +282,7 @@ def _spoil(file: File) -> None:
         (_set("ReceiverPosition", np.zeros((2, 3, 1))), "ReceiverPosition: no receiver is left"),
         (_attribute("Type", "polar", "SourcePosition"), "SourcePosition: Type is 'polar'"),
         (_attribute("Units", "gon, gon, metre", "SourcePosition"), "SourcePosition: Units"),
+        (_untold, "SourcePosition: Type and Units are missing; allowed are"),
         (_set("ListenerView", [[0.0, 0.0, 0.0]]), "ListenerView: points nowhere"),
         (_set("ListenerUp", [[2.0, 0.0, 0.0]]), "ListenerUp: points nowhere"),
     ],
@@ -288,6 +294,12 @@ def test_what_is_no_head_is_refused_by_file_and_variable(
     with pytest.raises(dwell.MeasuredDataError, match=part) as error:
         dwell.Head.from_sofa(path)
     assert str(error.value).startswith(f"{path}: ")
+
+
+def test_places_without_a_type_are_those_of_their_units(write: Write) -> None:
+    whole = dwell.Head.from_sofa(write(lambda _: None))
+    untyped = dwell.Head.from_sofa(write(lambda file: file["SourcePosition"].attrs.pop("Type")))
+    assert untyped == whole
 
 
 def test_other_files_are_refused(tmp_path: Path) -> None:

@@ -44,6 +44,13 @@ def test_rows_without_a_number_are_left_out_and_counted(tmp_path: Path) -> None:
     assert len(table(tmp_path, "trajectory.csv")) == 3 * 157
 
 
+def test_space_around_the_name_of_an_episode_is_no_part_of_it(tmp_path: Path) -> None:
+    def spaced(rows: Rows) -> None:
+        rows[1][0], rows[2][0] = f" {rows[1][0]}", f"{rows[2][0]} "
+
+    assert brought(tmp_path, FLIGHT, spaced)["episodes"] == 4
+
+
 def test_a_table_without_any_number_is_refused(tmp_path: Path) -> None:
     told = refused(tmp_path, FLIGHT, lambda rows: [row.__setitem__(3, "") for row in rows])
     assert "160 of 160 rows have no number in column y: left out; none is left" in told

@@ -18,6 +18,7 @@ from numpy.typing import NDArray
 
 from dwell import _native
 from dwell.measured.importing import import_files
+from dwell.sounds import write_wav
 
 ROOT = Path(__file__).resolve().parents[2]
 MAPS = ROOT / "examples" / "measured"
@@ -273,6 +274,21 @@ def test_channels_become_receivers_and_their_places_the_engine_s(tmp_path: Path)
     assert manifest["scene"]["environment"]["temperature_c"] == 24.0
     groups = [row["split_group"] for row in rows_of(tmp_path, "episodes.csv")]
     assert groups == ["s0", "s1", "s0", "s1"]
+
+
+@pytest.mark.parametrize(
+    ("last", "told"),
+    [(0.0, "every sample is 0; allowed"), (np.nan, "sample 399 of channel 1 is nan; allowed")],
+)
+def test_a_recording_without_sound_is_told_by_its_own_name(
+    tmp_path: Path, last: float, told: str
+) -> None:
+    recordings(tmp_path)
+    path = tmp_path / "r2.wav"
+    write_wav(path, np.zeros((2, 400)), 16_000)
+    path.write_bytes(path.read_bytes()[:-4] + np.float32(last).tobytes())
+    with pytest.raises(ValueError, match=rf"r2\.wav: {told}"):
+        brought(tmp_path, ROOM, "index.csv")
 
 
 @pytest.mark.parametrize(

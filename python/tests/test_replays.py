@@ -384,6 +384,13 @@ def test_listening_changes_a_recording_only_where_no_ears_were_open(tmp_path: Pa
         assert replay.first_difference() is None
 
 
+def test_actions_that_can_be_read_once_are_refused(file: Path) -> None:
+    replay = dwell.Replay.read(file)
+    once = dataclasses.replace(replay, actions=iter(replay.actions))  # type: ignore[arg-type] # what is tested
+    with pytest.raises(dwell.MeasuredDataError, match=r"actions is .*; expected a list"):
+        once.check()
+
+
 def test_the_longest_replay_has_one_hash_more_than_actions(file: Path) -> None:
     replay = dwell.Replay.read(file)
     most = replays.MAX_STEPS

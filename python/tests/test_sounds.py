@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import struct
 import wave
 from pathlib import Path
 
@@ -33,6 +34,29 @@ def test_pressure_comes_back_to_the_bit(tmp_path: Path) -> None:
     assert np.array_equal(found, SOUND)
     write_wav(path, SOUND[:, :0], 16_000)
     assert read_wav(path)[0].shape == (3, 0)
+
+
+def test_what_a_head_says_wrongly_is_told(tmp_path: Path) -> None:
+    path = tmp_path / "a.wav"
+    write_wav(path, SOUND, 16_000)
+    whole = path.read_bytes()
+    at = whole.index(b"data") + 4
+    path.write_bytes(whole[:at] + bytes(4) + whole[at + 4 :])
+    with pytest.raises(dwell.MeasuredDataError, match=r"0 bytes of sound, and 4812 follow"):
+        read_wav(path)
+    path.write_bytes(whole[:24] + bytes(4) + whole[28:])
+    with pytest.raises(dwell.MeasuredDataError, match=r"a\.wav: its head says 0 samples a second"):
+        read_wav(path)
+
+
+def test_numbers_beyond_32_bits_are_refused(tmp_path: Path) -> None:
+    path = tmp_path / "a.wav"
+    sound = np.array([0.5, 1e300]).tobytes()
+    layout = struct.pack("<HHIIHH", 3, 1, 16_000, 128_000, 8, 64)
+    body = b"WAVEfmt " + struct.pack("<I", 16) + layout + b"data" + struct.pack("<I", 16) + sound
+    path.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
+    with pytest.raises(dwell.MeasuredDataError, match=r"sample 1 of channel 0 is 1e\+300"):
+        read_wav(path)
 
 
 def test_files_are_those_of_the_format(tmp_path: Path) -> None:

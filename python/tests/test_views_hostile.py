@@ -104,6 +104,11 @@ def test_records_outside_of_the_data_set_are_not_read(folder: Path, tmp_path: Pa
         (lambda row: row["images"].update(rgb="../x.png"), r"images\.rgb is '../x\.png'"),
         (lambda row: row["images"].pop("depth"), "images are of"),
         (lambda row: row["things"][0].update(box=[1, 2]), r"things\[0\]\.box has 2 numbers"),
+        (lambda row: row["things"][0].update(box=[0, 0, 65, 1]), r"things\[0\]\.box is .*64 x 64"),
+        (lambda row: row["things"][0].update(box=[-1, 0, 2, 1]), r"things\[0\]\.box is .*64 x 64"),
+        (lambda row: row["things"][0]["mask"].update(size=[9, 64]), r"mask\.size is .*\[64, 64\]"),
+        (lambda row: row["things"][0]["mask"].pop("counts"), r"mask\.counts is None"),
+        (lambda row: row["things"].append(row["things"][0]), "as that of a thing before it"),
         (lambda row: row["questions"].append({}), r"questions\[\d+\]\.text is None"),
         (lambda row: row.pop("camera"), "field 'camera' is missing"),
         (lambda row: row.update(house=[]), r"house is \[\]"),
@@ -114,6 +119,14 @@ def test_a_field_that_is_none_is_told_with_file_and_line(
 ) -> None:
     edit(folder, change)
     with pytest.raises(ValueError, match=rf"records\.jsonl line 1: .*{told}"):
+        list(dataset.records(folder))
+
+
+def test_two_rows_of_one_id_are_told(folder: Path) -> None:
+    file = house_of(folder) / "records.jsonl"
+    first = file.read_text("utf-8").splitlines()[0]
+    file.write_text(f"{first}\n{first}\n", "utf-8")
+    with pytest.raises(ValueError, match=r"line 2: id is '.*-000', as that of line 1"):
         list(dataset.records(folder))
 
 

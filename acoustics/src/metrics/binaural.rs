@@ -1,7 +1,7 @@
 //! Binaural measures: cross-correlation, time and level differences.
 
 use super::filters::{BandWidth, ZeroPhaseFilters};
-use super::response::{DIRECT_SOUND_S, energy, onset_sample};
+use super::response::{DIRECT_SOUND_S, energy, onset_sample, within_range};
 use serde::Serialize;
 use std::f64::consts::PI;
 
@@ -64,6 +64,8 @@ pub fn binaural_metrics(
     let Some(start) = onset_sample(&[left, right]) else {
         return metrics;
     };
+    let (ears, _) = within_range(&[left, right]);
+    let [left, right] = [&ears[0][..], &ears[1][..]];
     let lags = libm::ceil(LARGEST_S * rate_hz) as usize;
     let longest = left.len().max(right.len());
     let mut filters = ZeroPhaseFilters::new(width, rate_hz, longest);

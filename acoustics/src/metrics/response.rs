@@ -2,6 +2,7 @@
 
 use super::decay::{BandMetrics, EnergyCurve};
 use super::filters::{BandWidth, ZeroPhaseFilters};
+use std::borrow::Cow;
 
 /// Duration of the direct sound after the start, s.
 pub(super) const DIRECT_SOUND_S: f64 = 0.0025;
@@ -24,6 +25,8 @@ pub fn impulse_response_metrics(
     let Some(start) = onset_sample(&[samples]) else {
         return metrics;
     };
+    let (scaled, gain_db) = within_range(&[samples]);
+    let samples = &scaled[0][..];
     let direct = (start + (DIRECT_SOUND_S * rate_hz) as usize + 1).min(samples.len());
     let mut rest = samples.to_vec();
     rest[..direct].fill(0.0);
@@ -54,6 +57,7 @@ pub fn impulse_response_metrics(
             drr_db: super::decibels(direct, rest),
             ..curve.metrics(arrival_s, 0.0)
         };
+        found.g_db = found.g_db.map(|g_db| g_db - gain_db);
     }
     metrics
 }
@@ -67,6 +71,29 @@ pub(super) fn onset_sample(channels: &[&[f32]]) -> Option<usize> {
         .iter()
         .filter_map(|channel| channel.iter().position(loud));
     starts.min()
+}
+
+/// The peak below and above which filters and energies of 32 bits lose what they are given.
+const PEAKS: [f32; 2] = [1e-12, 1e12];
+
+/// Returns channels with a peak that filters can take, and by how much they were raised, dB: as they are but for extreme ones, which are
+/// scaled by a power of 2.
+pub(super) fn within_range<'a>(channels: &[&'a [f32]]) -> (Vec<Cow<'a, [f32]>>, f64) {
+    let all = channels.iter().flat_map(|channel| channel.iter());
+    let peak = all.fold(0.0_f32, |peak, x| peak.max(x.abs()));
+    if (PEAKS[0]..=PEAKS[1]).contains(&peak) || peak == 0.0 {
+        return (
+            channels.iter().map(|own| Cow::Borrowed(*own)).collect(),
+            0.0,
+        );
+    }
+    let exponent = -libm::ilogbf(peak);
+    let raised = |own: &&[f32]| own.iter().map(|x| libm::ldexpf(*x, exponent)).collect();
+    let gain_db = 20.0 * std::f64::consts::LOG10_2 * f64::from(exponent);
+    (
+        channels.iter().map(raised).map(Cow::Owned).collect(),
+        gain_db,
+    )
 }
 
 pub(super) fn energy(samples: &[f32]) -> f64 {
@@ -100,6 +127,28 @@ mod tests {
                     continue;
                 };
                 assert!((t30 / t60 - 1.0).abs() < 0.1, "{width:?} {band}: {t30}");
+            }
+        }
+    }
+
+    /// Louder by any power of two, all but the strength stays as it is.
+    #[test]
+    fn extreme_levels_change_the_strength_alone() {
+        let samples = decaying(16_000.0, 0.6, 16_000);
+        let plain = impulse_response_metrics(&samples, 16_000.0, BandWidth::Octave);
+        for exponent in [-120, 120] {
+            let scaled: Vec<f32> = samples.iter().map(|x| libm::ldexpf(*x, exponent)).collect();
+            let found = impulse_response_metrics(&scaled, 16_000.0, BandWidth::Octave);
+            for (own, before) in found.iter().zip(&plain) {
+                let gain_db = 20.0 * std::f64::consts::LOG10_2 * f64::from(exponent);
+                let close = |a: Option<f64>, b: Option<f64>| match (a, b) {
+                    (Some(a), Some(b)) => (a - b).abs() <= 1e-3 * b.abs().max(1.0),
+                    (a, b) => a == b,
+                };
+                assert!(close(own.t30_s, before.t30_s), "{own:?} {before:?}");
+                assert!(close(own.c50_db, before.c50_db), "{own:?} {before:?}");
+                let strength = before.g_db.map(|g_db| g_db + gain_db);
+                assert!(close(own.g_db, strength), "{own:?} {before:?}");
             }
         }
     }

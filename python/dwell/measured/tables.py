@@ -72,10 +72,8 @@ class MeasuredTable:
             raise ValueError(f"{self._at}: only is {only}; no row of {self.name} has that")
 
     def text(self, row: Row, columns: list[str]) -> str:
-        """The texts of columns, joined by a slash."""
-        if len(columns) == 1:
-            return cell_text(row.get(columns[0]))
-        return "/".join(cell_text(row.get(name)) for name in columns)
+        """The texts of columns without space around them, joined by a slash."""
+        return "/".join(cell_text(row.get(name)).strip() for name in columns)
 
     def number(self, place: Place, row: Row, column: str) -> float:
         """A finite number in a column."""

@@ -62,10 +62,14 @@ def house_rows(house: Path) -> Iterator[dict[str, Any]]:
         OSError: The system refuses, or there is no such file.
     """
     place = _inside(house, RECORDS)
+    known: dict[str, int] = {}
     with open_file(place) as file:
         for number, line in enumerate(lines(file, place), start=1):
             at = f"{place} line {number}"
-            yield _checked(at, parse_json(line, at))
+            row = _checked(at, parse_json(line, at))
+            if (before := known.setdefault(row["id"], number)) != number:
+                raise ConfigError(f"{at}: id is {row['id']!r}, as that of line {before}")
+            yield row
 
 
 def picture_bytes(house: Path, name: str) -> bytes:
@@ -142,7 +146,12 @@ def _checked(at: str, row: object) -> dict[str, Any]:
     captions = mapping(f"{at}: captions", field("captions"))
     for length in {*captions, *_LENGTHS}:
         _texts(f"{at}: captions.{length}", captions.get(length), "text")
-    known = {_thing(own, one) for own, one in _rows(f"{at}: things", field("things"))}
+    size = (camera["height"], camera["width"])
+    known: set[int] = set()
+    for own, one in _rows(f"{at}: things", field("things")):
+        if (number := _thing(own, one, size)) in known:
+            raise ConfigError(f"{own}.id is {number}, as that of a thing before it")
+        known.add(number)
     for own, one in _rows(f"{at}: references", field("references")):
         number = integer_in_range(f"{own}.id", _texts(own, one, "text", "strategy").get("id"))
         if number not in known:
@@ -165,14 +174,24 @@ def _texts(at: str, found: object, *names: str) -> dict[str, Any]:
     return own
 
 
-def _thing(at: str, found: object) -> int:
+def _thing(at: str, found: object, size: tuple[int, int]) -> int:
+    """The id of a thing whose box and mask are those of a picture of this height and width."""
     own = _texts(at, found, "category")
     integer_in_range(f"{at}.pixels", own.get("pixels"))
     box = sequence_items(f"{at}.box", own.get("box"), "expected four numbers")
     if len(box) != 4:
         raise ConfigError(f"{at}.box has {len(box)} numbers; expected four")
-    for k, number in enumerate(box):
-        finite_number(f"{at}.box[{k}]", number)
-    mapping(f"{at}.mask", own.get("mask"))
+    left, top, width, height = (
+        finite_number(f"{at}.box[{k}]", number) for k, number in enumerate(box)
+    )
+    if min(left, top, width, height) < 0 or left + width > size[1] or top + height > size[0]:
+        raise ConfigError(
+            f"{at}.box is {quoted(list(box))}; expected first column, first row, width and height "
+            f"within {size[1]} x {size[0]} pixels"
+        )
+    mask = mapping(f"{at}.mask", own.get("mask"))
+    if mask.get("size") != [*size]:
+        raise ConfigError(f"{at}.mask.size is {quoted(mask.get('size'))}; expected {[*size]}")
+    text(f"{at}.mask.counts", mask.get("counts"))
     finite_number(f"{at}.occlusion", own.get("occlusion"))
     return integer_in_range(f"{at}.id", own.get("id"))

@@ -66,6 +66,18 @@ fn is_quotation_mark(letter: char) -> bool {
     )
 }
 
+impl LexiconEntry {
+    /// An entry by the texts of its forms, by variant.
+    pub fn of_texts(class: &str, id: &str, forms: &[&[&str]]) -> Self {
+        let of = |texts: &&[&str]| texts.iter().map(|text| split(text)).collect();
+        Self {
+            class: class.to_owned(),
+            id: id.to_owned(),
+            forms: forms.iter().map(of).collect(),
+        }
+    }
+}
+
 /// The lexicon: its entries, indexed by name and by first word.
 #[derive(Clone, Debug, Default)]
 pub struct Lexicon {
@@ -104,6 +116,15 @@ pub(super) struct EntryMatch {
 impl Lexicon {
     /// Adds an entry. If one of its class and name exists, that gains the forms, as synonyms of those that it has.
     pub fn add(&mut self, entry: LexiconEntry) {
+        self.add_forms(entry, true);
+    }
+
+    /// Adds forms to an entry that are read and never said.
+    pub fn add_read_only(&mut self, entry: LexiconEntry) {
+        self.add_forms(entry, false);
+    }
+
+    fn add_forms(&mut self, entry: LexiconEntry, are_said: bool) {
         let at = if let Some(at) = self.place(&entry.class, &entry.id) {
             at
         } else {
@@ -132,19 +153,16 @@ impl Lexicon {
                     cost: u32::from(!known.is_empty()),
                     words,
                 });
-                known.push(form);
+                if are_said {
+                    known.push(form);
+                }
             }
         }
     }
 
     /// Adds an entry by the texts of its forms, by variant; the first text of each variant is said.
     pub fn add_texts(&mut self, class: &str, id: &str, forms: &[&[&str]]) {
-        let of = |texts: &&[&str]| texts.iter().map(|text| split(text)).collect();
-        self.add(LexiconEntry {
-            class: class.to_owned(),
-            id: id.to_owned(),
-            forms: forms.iter().map(of).collect(),
-        });
+        self.add(LexiconEntry::of_texts(class, id, forms));
     }
 
     /// Sets the words for whole numbers, from 0, and for ordinals, from 1.

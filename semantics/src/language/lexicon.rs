@@ -3,7 +3,7 @@
 use crate::category::categories;
 use crate::color::ColorVocabulary;
 use crate::english::{GATHERING_WORDS, plural};
-use crate::grammar::{GrammarError, Lexicon};
+use crate::grammar::{GrammarError, Lexicon, LexiconEntry};
 use crate::kind_noun::kind_nouns;
 use crate::material_family::families;
 use crate::room_kind::room_kinds;
@@ -49,6 +49,8 @@ struct LexiconFile {
     noun: TextPairs,
     #[serde(default)]
     noun_synonym: Texts,
+    #[serde(default)]
+    verb_synonym: Texts,
     #[serde(default)]
     color_synonym: Texts,
     #[serde(default)]
@@ -150,6 +152,9 @@ pub(super) fn english(file: &str) -> Result<Lexicon, GrammarError> {
         for (id, texts) in entries {
             lexicon.add_texts(class, id, &[&borrowed(texts)]);
         }
+    }
+    for (id, texts) in &file.verb_synonym {
+        lexicon.add_read_only(LexiconEntry::of_texts(VERB, id, &[&borrowed(texts)]));
     }
     let pairs = [
         (VERB_RELATION, &file.verb_relation),

@@ -4,7 +4,7 @@ use std::fmt;
 
 use ::gltf::json::{Index, Node, Root};
 use dwell_scene::{Sky, StructureKind};
-use glam::{Affine3A, Mat4, Quat, Vec2, Vec3};
+use glam::{Affine3A, Mat4, Quat, Vec2, Vec3, Vec4};
 use serde::Deserialize;
 use serde::de::DeserializeOwned;
 
@@ -168,18 +168,8 @@ pub(super) fn node_tree(
             report.warn(at.field(named), damage);
             continue;
         }
-        let parent_from_node = if let Some(numbers) = node.matrix {
-            Affine3A::from_mat4(Mat4::from_cols_array(&numbers))
-        } else {
-            let rotation = node
-                .rotation
-                .map_or(Quat::IDENTITY, |r| Quat::from_array(r.0).normalize());
-            let scale = node.scale.map_or(Vec3::ONE, Vec3::from);
-            let translation = node.translation.map_or(Vec3::ZERO, Vec3::from);
-            Affine3A::from_scale_rotation_translation(scale, rotation, translation)
-        };
-        let world_from_mesh = world_from_parent * parent_from_node;
         let node_at = at.field(format_args!("nodes[{index}]"));
+        let world_from_mesh = world_from_parent * parent_from_node(node, &node_at, report);
         if !world_from_mesh.is_finite() {
             let reason = "it is not finite".to_owned();
             report.warn(node_at, WarningKind::BadTransform { reason });
@@ -347,4 +337,45 @@ fn room_from_extras(
         floor_y: known.floor_y,
         ceiling_y: known.ceiling_y,
     })
+}
+
+/// The largest difference of a rotation's length from 1, and of a matrix's last row from 0, 0, 0, 1, that is rounding.
+const ROUNDING: f32 = 1e-3;
+
+/// The transform that a node states; what the format does not allow is reported.
+///
+/// # Source
+/// Khronos Group, glTF 2.0 specification (2021), section 3.5.3: a node has a matrix or translation, rotation and scale; a matrix can be
+/// decomposed into these, and rotations have unit length.
+fn parent_from_node(node: &Node, at: &FileLocation, report: &mut LoadReport) -> Affine3A {
+    let mut simplified = |what: String| report.warn(at.clone(), WarningKind::Simplified { what });
+    let is_stated = node.translation.is_some() || node.rotation.is_some() || node.scale.is_some();
+    if let Some(numbers) = node.matrix {
+        if is_stated {
+            let what = "its matrix counts, the translation, rotation or scale beside it does not";
+            simplified(what.to_owned());
+        }
+        let matrix = Mat4::from_cols_array(&numbers);
+        let last = matrix.row(3);
+        if (last - Vec4::W).abs().max_element() > ROUNDING {
+            let last = last.to_array();
+            simplified(format!(
+                "the last row of its matrix is {last:?}, and counts as [0, 0, 0, 1]"
+            ));
+        }
+        return Affine3A::from_mat4(matrix);
+    }
+    let mut rotation = node.rotation.map_or(Vec4::W, |own| Vec4::from(own.0));
+    let length = rotation.as_dvec4().length();
+    if (length - 1.0).abs() > f64::from(ROUNDING) && length > 0.0 {
+        simplified(format!(
+            "its rotation has the length {length:.4e}, and counts as one of length 1"
+        ));
+        // The square of a long one is infinite.
+        rotation /= rotation.abs().max_element();
+    }
+    let rotation = Quat::from_vec4(rotation).normalize();
+    let scale = node.scale.map_or(Vec3::ONE, Vec3::from);
+    let translation = node.translation.map_or(Vec3::ZERO, Vec3::from);
+    Affine3A::from_scale_rotation_translation(scale, rotation, translation)
 }

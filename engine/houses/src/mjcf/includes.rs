@@ -69,6 +69,12 @@ impl IncludeChecker<'_> {
             return Err(refuse(format!("it includes itself: {chain} > {name}")));
         }
         let document = xml::parse(text, &at)?;
+        let root = document.root_element().tag_name().name();
+        if self.open.is_empty() && root != "mujoco" {
+            return Err(refuse(format!(
+                "no model of MuJoCo: its root is <{root}>, expected <mujoco>"
+            )));
+        }
         let lines = LineIndex::new(&document);
         self.open.push(name.to_owned());
         let too_many = |found: u64| HousesError::TooLarge {

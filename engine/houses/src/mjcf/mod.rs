@@ -12,10 +12,9 @@ mod includes;
 mod read;
 mod unread_elements;
 
-use std::io::Read as _;
 use std::path::Path;
 
-use dwell_scene::{House, file};
+use dwell_scene::House;
 
 use crate::error::HousesError;
 use crate::report::LoadReport;
@@ -23,21 +22,10 @@ use crate::robot;
 
 pub(crate) use read::read;
 
-/// Length of the head of a file that is searched to tell MuJoCo's XML from another's, bytes.
-const HEAD: u64 = 4096;
-
-/// Returns whether `path` names an XML file whose root is `<mujoco>`.
+/// Returns whether `path` names an XML file: no other format has such.
 pub(crate) fn recognizes(path: &Path) -> bool {
-    let is_xml = path
-        .extension()
-        .is_some_and(|ending| ending.eq_ignore_ascii_case("xml"));
-    let head = || {
-        let mut head = Vec::new();
-        let file = file::open(path, u64::MAX).ok()?;
-        file.take(HEAD).read_to_end(&mut head).ok()?;
-        Some(head)
-    };
-    is_xml && head().is_some_and(|head| String::from_utf8_lossy(&head).contains("<mujoco"))
+    let ending = path.extension();
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("xml")) && path.is_file()
 }
 
 /// Opens a house of several bodies (`docs/formats/mjcf.md`), or a robot on a ground of its own.

@@ -109,7 +109,6 @@ impl ProcThorReader<'_> {
         let Some(room) = self.containing_or_nearest_room(middle).map(|room| room.id) else {
             return;
         };
-        *unsized_count += usize::from(size.is_none());
         // The height of a thing on the floor is twice that of its middle.
         let upright = turned.mul_vec3(Vec3::Y).y > 0.99;
         let stands = 2.0 * (middle.y - self.floor_y);
@@ -131,6 +130,7 @@ impl ProcThorReader<'_> {
         let Some(Some(kind)) = kinds.get(&key) else {
             return;
         };
+        *unsized_count += usize::from(size.is_none());
         let center = kind.model.bounds().center();
         let facing = turned * axis_rotation(Vec3::Y, HALF_TURN);
         let pose = Pose::new(middle, facing) * Pose::from_position(-center);

@@ -65,7 +65,7 @@ impl RobotFileLoader {
         let bytes = self.root.read(&self.file, MAX_TEXT_BYTES)?;
         String::from_utf8(bytes).map_err(|error| HousesError::Syntax {
             at: FileLocation::file(&self.file),
-            message: error.to_string(),
+            message: format!("no UTF-8 text: {}; save it as UTF-8", error.utf8_error()),
         })
     }
 

@@ -9,7 +9,7 @@ use crate::common;
 use common::base64;
 
 use dwell_houses::{HousesError, WarningKind, gltf, open};
-use dwell_scene::{House, LightShape, Mobility, ShoeboxMaterials, State};
+use dwell_scene::{House, LightShape, Mobility, ObjectId, ShoeboxMaterials, State};
 use glam::{Vec2, Vec3};
 
 /// A tetrahedron as text: positions and byte indices in one base64 buffer made by hand (48 bytes of floats, 12 of indices).
@@ -406,6 +406,42 @@ fn lamps_come_back_from_our_own_glb() {
         );
         let shines = house.objects[light.object].switch != Some(false);
         assert_eq!(carrier.switch, Some(shines), "{name}");
+    }
+}
+
+/// Khronos Group, glTF 2.0, section 3.5.3: what a node may not say of its place is told.
+#[test]
+fn transforms_that_the_format_does_not_allow_are_reported() {
+    let matrix = "\"matrix\": [1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1, 0, 0, 0, 0, 1]";
+    let skewed = matrix.replacen("[1, 0, 0, 0,", "[1, 0, 0, 0.5,", 1);
+    for (place, told) in [
+        (matrix.to_owned(), None),
+        (
+            format!("{matrix}, \"translation\": [5, 5, 5]"),
+            Some("its matrix counts"),
+        ),
+        (
+            skewed,
+            Some("the last row of its matrix is [0.5, 0.0, 0.0, 1.0]"),
+        ),
+        (
+            "\"rotation\": [0, 0, 0, 1e30]".to_owned(),
+            Some("its rotation has the length 1.0000e30"),
+        ),
+    ] {
+        let nodes = format!(r#"[{{"mesh": 0, "name": "chair", {place}}}]"#);
+        let (house, report) = open_text(&text(&nodes, "")).unwrap();
+        let plain = r#"[{"mesh": 0, "name": "chair"}]"#;
+        let (expected, _) = open_text(&text(plain, "")).unwrap();
+        let found = house.object_bounds(&State::new(&house), ObjectId(0));
+        let wanted = expected.object_bounds(&State::new(&expected), ObjectId(0));
+        assert_eq!(found, wanted, "{place}");
+        let said = report.to_string();
+        assert_eq!(
+            told.is_some(),
+            said.contains(told.unwrap_or("counts as")),
+            "{place}: {said}"
+        );
     }
 }
 

@@ -184,6 +184,17 @@ fn a_single_body_is_still_a_robot_on_a_ground() {
 fn broken_houses_say_what_is_wrong() {
     let error = opened(&HOUSE.replace("</mujoco>", "")).unwrap_err();
     assert!(matches!(error, HousesError::Syntax { .. }), "{error}");
+    let error = opened("<html><body/></html>").unwrap_err().to_string();
+    assert!(
+        error.ends_with("its root is <html>, expected <mujoco>"),
+        "{error}"
+    );
+    let folder = tempfile::tempdir().unwrap();
+    let path = folder.path().join("scene.xml");
+    let text: Vec<u8> = HOUSE.encode_utf16().flat_map(u16::to_le_bytes).collect();
+    std::fs::write(&path, [&[0xff, 0xfe], &text[..]].concat()).unwrap();
+    let error = open(&path.to_string_lossy()).unwrap_err().to_string();
+    assert!(error.contains("scene.xml: no UTF-8 text"), "{error}");
     let (house, report) = opened(&HOUSE.replace("mass=\"0.3\"", "mass=\"-1\"")).unwrap();
     assert!(house.objects.iter().all(|o| o.source_id != "mug_1"));
     assert!(report.to_string().contains("mug_1"), "{report}");

@@ -230,6 +230,15 @@ fn without_a_table_of_assets_things_have_their_usual_size_and_stand_on_the_floor
     let (house, report) = opened(&file(), false);
     let said = |d: &WarningKind| matches!(d, WarningKind::Simplified { what } if what.contains("usual size"));
     assert_eq!(report.count(said), 1, "{report}");
+    let count = |report: &LoadReport| -> usize {
+        let text = report.to_string();
+        let (before, _) = text.split_once(" things have the usual size").unwrap();
+        before.rsplit(' ').next().unwrap().parse().unwrap()
+    };
+    // What is left out has none.
+    let mut changed = file();
+    changed["objects"][2]["id"] = json!("Spaceship|2|1");
+    assert_eq!(count(&opened(&changed, false).1), count(&report) - 1);
     let state = State::new(&house);
     for (k, o) in house.objects.iter().enumerate() {
         let bounds = house.object_bounds(&state, dwell_scene::ObjectId(k as u32));

@@ -392,9 +392,20 @@ def _wav_path(told: str, known: dict[str, Path], place: Place) -> Path:
 
 def _recording(path: Path) -> tuple[NDArray[np.float32], int]:
     try:
-        return read_wav(path)
+        sound, rate_hz = read_wav(path)
     except MeasuredDataError as error:
         raise ValueError(str(error)) from None
+    if not (finite := np.isfinite(sound)).all():
+        channel, sample = (int(k) for k in np.argwhere(~finite)[0])
+        raise ValueError(
+            f"{path}: sample {sample} of channel {channel} is {sound[channel, sample]:g}; allowed "
+            "are finite numbers, Pa"
+        )
+    if not sound.any():
+        raise ValueError(
+            f"{path}: every sample is 0; allowed is an impulse response with sound in it"
+        )
+    return sound, rate_hz
 
 
 def _from_sofa(job: Job) -> Iterator[_Response]:

@@ -232,7 +232,7 @@ pub(super) const PROCTHOR: Column = Column {
             Is(warns(
                 "asset",
                 |d| scenes::procthor(d, "/objects/0/assetId", json!("Nothing_77")),
-                &["home.json: objects", "3 things have the usual size"],
+                &["home.json: objects", "2 things have the usual size"],
             )),
         ),
         (Row::Parent, Cannot(ONE_FILE)),
