@@ -91,6 +91,21 @@ class Comparison:
             self.differing[at] = (stated_m, found_m)
 
 
+def _refuse_unread(task: str, **told: Mapping[str, bool]) -> None:
+    """Refuses options that were given and are of the episodes of another task.
+
+    Args:
+        task: That of the episodes.
+        **told: By the name of a task its options, and whether they were given.
+    """
+    for other, options in told.items():
+        given = [name for name, is_given in options.items() if is_given]
+        if other != task and given:
+            raise ConfigError(
+                f"{given[0]} is given, and is read for episodes of {other}; these are of {task}"
+            )
+
+
 class HabitatConverter:
     """Converts a data set of Habitat or SoundSpaces.
 
@@ -182,6 +197,15 @@ class HabitatConverter:
         self._everlasting = boolean("everlasting", everlasting)
         self._expert = boolean("expert", expert)
         self._on_skip = on_skip
+        _refuse_unread(
+            first.task,
+            ObjectNav={"instances": instances != "class", "classes": bool(self._classes)},
+            AudioNav={
+                "sounds": bool(self._sounds),
+                "sound_root": sound_root is not None,
+                "everlasting": self._everlasting,
+            },
+        )
         about = task_of(first.task)
         self._max_steps = int(about["max_steps"])
         self.comparison = Comparison()

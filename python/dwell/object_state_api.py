@@ -28,7 +28,7 @@ class StateApi:
             than its height it is. ``gyro_rad_s``: how fast it turns, positive to the left.
             ``body``: what its body can now, as ``agents`` of the constructor, with the numbers that
             :meth:`set_parameters` set. ``base``: its wheels, as ``wheel_rad_s``,
-            ``wheel_turned_rad`` (left, right), ``twist`` and ``odometry``.
+            ``wheel_rotation_rad`` (left, right), ``twist`` and ``odometry``.
         """
         return agent_states(self._native.agents())
 

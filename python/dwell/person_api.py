@@ -8,11 +8,13 @@ from typing import Any, Literal, TypeAlias
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
+from dwell import ConfigError, _native
 from dwell.arguments import choice, integer_in_range, point
 
 _SIDES: tuple[Literal["left", "right"], ...] = ("left", "right")
 
+#: The largest coordinate of what a person reaches for, m.
+_FURTHEST_M = 1000.0
 #: A point, m.
 _Point: TypeAlias = Sequence[float] | NDArray[np.floating[Any]]
 
@@ -52,8 +54,9 @@ class PersonApi:
                 hand is the one that the person prefers.
 
         Raises:
-            ConfigError: There is no such agent, it is no person, or a point is not three finite
-                numbers of -1000 to 1000.
+            ConfigError: There is no such agent, or a point is not three finite numbers of -1000 to
+                1000.
+            UsageError: The agent is no person.
 
         Examples:
             >>> import dwell
@@ -67,7 +70,7 @@ class PersonApi:
         """
         number = integer_in_range("agent", agent)
         points = {
-            name: None if given is None else list(point(name, given))
+            name: None if given is None else _within_reach(name, point(name, given))
             for name, given in (
                 ("look_at", look_at),
                 ("left_hand", left_hand),
@@ -94,7 +97,16 @@ class PersonApi:
             ``finger_tip``, ``hip``, ``knee``, ``ankle`` and ``toe``.
 
         Raises:
-            ConfigError: There is no such agent, or it is no person.
+            ConfigError: There is no such agent.
+            UsageError: It is no person.
         """
         rows = _native.world_person_joints(self._native, integer_in_range("agent", agent))
         return {name: np.array(row, np.float32) for name, row in rows.items()}
+
+
+def _within_reach(name: str, place: tuple[float, float, float]) -> list[float]:
+    if max(map(abs, place)) > _FURTHEST_M:
+        raise ConfigError(
+            f"{name} is {place}; allowed are coordinates of -{_FURTHEST_M:g} to {_FURTHEST_M:g} m"
+        )
+    return [*place]

@@ -17,7 +17,7 @@ from __future__ import annotations
 from typing import TYPE_CHECKING, Any
 
 from dwell import ConfigError, UsageError
-from dwell.arguments import quoted
+from dwell.arguments import choice, quoted
 
 try:
     from pettingzoo.utils import BaseWrapper, OrderEnforcingWrapper, parallel_to_aec
@@ -78,14 +78,26 @@ class _Turns(BaseWrapper[str, Any, Any]):  # type: ignore[misc] # untyped
 
         Raises:
             UsageError: Its episode has ended, and the action is not ``None``.
+            ConfigError: The action is none of the agent's; it is still its turn.
         """
         agent = self.agent_selection
-        if action is not None and (self.terminations[agent] or self.truncations[agent]):
+        has_ended = self.terminations[agent] or self.truncations[agent]
+        if action is not None and has_ended:
             raise UsageError(
                 f"step: the episode of {agent} has ended; its action is {quoted(action, 80)}, "
                 "expected None"
             )
+        if not has_ended:
+            self.unwrapped.check_action(agent, action)
         super().step(action)
+
+    def observe(self, agent: str) -> Any:  # noqa: ANN401 - of the agent's space
+        """What an agent observes.
+
+        Raises:
+            ConfigError: There is no such agent.
+        """
+        return super().observe(choice("agent", agent, tuple(self.possible_agents)))
 
     def __str__(self) -> str:
         return str(self.env)

@@ -15,6 +15,7 @@ import dwell.house_list
 import dwell.measures
 from dwell import plans, sound_maps
 from dwell.envs import DwellEnv, DwellVectorEnv
+from dwell.views import ViewSettings, house_records
 
 pytestmark = pytest.mark.usefixtures("open_once")
 
@@ -441,6 +442,8 @@ CALLS = [
         'dwell.evaluation.evaluate("stop", task="Free", progress=5)',
         "progress is 5; expected a function or None",
     ),
+    ("W.set_gesture(0, point_at=(1, 1, 5000))", "point_at is (1.0, 1.0, 5000.0); allowed are"),
+    ("house_records(5, ViewSettings(views=1))", "name is 5; expected text"),
     ("dwell.House.generate(1, area_m2=np.ma.masked)", "area_m2 has masked elements; give what"),
     ("dwell.Replay.read(None)", "path is None; expected text or a path"),
     ('dwell.Replay.read(b"x")', "path is b'x'; expected text"),
@@ -495,6 +498,8 @@ def names() -> dict[str, Any]:
         "np": np,
         "dwell": dwell,
         "DwellEnv": DwellEnv,
+        "ViewSettings": ViewSettings,
+        "house_records": house_records,
         "DwellVectorEnv": DwellVectorEnv,
         "plans": plans,
         "sound_maps": sound_maps,

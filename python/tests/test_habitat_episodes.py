@@ -382,6 +382,11 @@ def test_places_off_the_floor_are_skipped_or_moved(
         (["--shard", "0/2"], "--shard is given, and --from does not read it"),
         (["--set", "colour=1"], "no argument 'colour'"),
         (["--classes", "a=b", "--classes", "a=c"], "--classes: a is given twice"),
+        (["--classes", "a=b"], "classes is given, and is read for episodes of ObjectNav; these"),
+        (["--instances", "stated"], "instances is given, and is read for episodes of ObjectNav"),
+        (["--sounds", "a=phone"], "sounds is given, and is read for episodes of AudioNav; these"),
+        (["--sound-root", "."], "sound_root is given, and is read for episodes of AudioNav"),
+        (["--everlasting"], "everlasting is given, and is read for episodes of AudioNav; these"),
     ],
 )
 def test_what_cannot_be_converted_is_refused(

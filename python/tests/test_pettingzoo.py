@@ -387,6 +387,21 @@ def test_who_takes_turns_and_has_none_left_is_told() -> None:
 
 
 @pytest.mark.long
+def test_a_wrong_action_is_refused_in_the_turn_of_its_agent() -> None:
+    env = zoo.env("Free", agents={"a": {}, "b": {}}, **STUDIO)
+    env.reset(seed=4)
+    for wrong in (99, "x"):
+        with pytest.raises(dwell.ConfigError, match="agent a: action is"):
+            env.step(wrong)
+        assert env.agent_selection == "a"
+    env.step(1)
+    assert env.agent_selection == "b"
+    env.step(2)
+    assert env.agent_selection == "a"
+    with pytest.raises(dwell.ConfigError, match="agent is 'nobody'; allowed are a, b"):
+        env.observe("nobody")
+
+
 def test_the_pair_that_cooperates_ends_together() -> None:
     env = zoo.parallel_env(
         "Cooperate",

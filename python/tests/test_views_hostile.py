@@ -132,9 +132,22 @@ def test_two_rows_of_one_id_are_told(folder: Path) -> None:
 
 def test_a_picture_that_is_none_is_told(folder: Path, tmp_path: Path) -> None:
     file = pictures(folder, "instance")[0]
-    file.write_bytes(file.read_bytes()[:60])
-    with pytest.raises(ValueError, match=r"instance\.png: no picture"):
+    whole = file.read_bytes()
+    file.write_bytes(whole[:60])
+    with pytest.raises(ValueError, match=r"instance\.png: the picture was cut"):
         export(folder, tmp_path / "out", "coco")
+    file.write_bytes(whole[:40] + bytes(40) + whole[80:])
+    with pytest.raises(ValueError, match=r"instance\.png: no picture: "):
+        export(folder, tmp_path / "out", "coco")
+
+
+@pytest.mark.parametrize("form", FORMS)
+def test_a_picture_that_is_none_is_not_exported(form: str, folder: Path, tmp_path: Path) -> None:
+    if form == "parquet":
+        pytest.importorskip("pyarrow", reason="needs pyarrow (extra data)")
+    pictures(folder, "rgb")[0].write_bytes(b"hi")
+    with pytest.raises(ValueError, match=r"rgb\.png: no picture in PNG"):
+        export(folder, tmp_path / "out", form)
 
 
 def test_what_was_cut_is_told_when_a_job_goes_on(folder: Path) -> None:

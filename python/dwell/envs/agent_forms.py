@@ -129,9 +129,17 @@ class AgentForms:
         taken = [NO_ACTION] * len(self.names)
         for k in self.players:
             if self.names[k] in given:
-                with _of_agent(self.names[k]):
-                    taken[k] = self._forms[k].one(given[self.names[k]])
+                taken[k] = self.of_agent(k, given[self.names[k]])
         return taken
+
+    def of_agent(self, agent: int, action: object) -> EngineActions:
+        """An agent's action as the engine takes it.
+
+        Raises:
+            ConfigError: It is none.
+        """
+        with _of_agent(self.names[agent]):
+            return self._forms[agent].one(action)
 
     def many(self, actions: object, acts: NDArray[np.bool_]) -> list[EngineActions]:
         """The actions of several environments, by the agents' names, as the engine takes them.

@@ -198,6 +198,14 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
         """The space of an agent's actions; always the same object."""
         return self._forms.action_spaces[self._named(agent)]
 
+    def check_action(self, agent: str, action: object) -> None:
+        """Refuses what is no action of an agent.
+
+        Raises:
+            ConfigError: It is none, or there is no such agent.
+        """
+        self._forms.of_agent(self._roster.place(agent), action)
+
     def _named(self, agent: object) -> str:
         return self._roster.names[self._roster.place(agent)]
 

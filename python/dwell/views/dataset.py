@@ -19,7 +19,7 @@ import numpy as np
 from numpy.typing import NDArray
 
 from dwell import ConfigError, DwellError
-from dwell.arguments import boolean, integer_in_range
+from dwell.arguments import boolean, integer_in_range, text
 from dwell.files import atomic_folder, is_whole
 from dwell.house_list import HouseList
 from dwell.views.cameras import held_cameras
@@ -87,6 +87,7 @@ def house_records(name: str, settings: ViewSettings) -> list[ViewRecord]:
     from dwell.house import House
     from dwell.world import World
 
+    name = text("name", name)
     lights = list(LIGHTS) if _SEED.match(name) and "time_of_day" not in name else ["own"]
     worlds = []
     for light in lights:

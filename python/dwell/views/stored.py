@@ -23,7 +23,7 @@ from dwell.arguments import (
     sequence_items,
     text,
 )
-from dwell.files import lines, open_file, parse_json, read
+from dwell.files import is_whole, lines, open_file, parse_json, read
 from dwell.views.record import IMAGES
 
 __all__ = ["RECORDS", "copy_picture", "picture", "picture_bytes", "records"]
@@ -32,6 +32,7 @@ __all__ = ["RECORDS", "copy_picture", "picture", "picture_bytes", "records"]
 RECORDS = "records.jsonl"
 #: A picture's file has at most so many bytes, as for the readers of houses.
 _MAX_PICTURE_BYTES = 64 * 2**20
+_PNG = b"\x89PNG\r\n\x1a\n"
 _SPLITS = ("train", "val", "test")
 _LENGTHS = ("short", "normal", "long")
 
@@ -76,10 +77,16 @@ def picture_bytes(house: Path, name: str) -> bytes:
     """The file of a picture of a record, from the folder of its house.
 
     Raises:
-        ValueError: It lies outside of the data set, or is larger than a picture is.
+        ValueError: It lies outside of the data set, is larger than a picture is, or is none in PNG
+            that is whole.
         OSError: The system refuses, or it is no regular file.
     """
-    return read(_inside(house, name), _MAX_PICTURE_BYTES)
+    content = read(_inside(house, name), _MAX_PICTURE_BYTES)
+    if not content.startswith(_PNG):
+        raise ValueError(f"{house / name}: no picture in PNG")
+    if not is_whole(house / name):
+        raise ValueError(f"{house / name}: the picture was cut")
+    return content
 
 
 def copy_picture(house: Path, name: str, to: Path) -> None:
