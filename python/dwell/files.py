@@ -245,9 +245,8 @@ def atomic_write(path: _Name, *, new: bool = False) -> Iterator[Path]:
     make_folder(place.parent)
     with errors_named(path), _draft(place) as folder:
         draft = folder / "file"
-        draft.touch(0o600)
+        draft.touch(0o644)
         yield draft
-        os.chmod(draft, 0o644)
         if new:
             _link(os.fspath(draft), place)
         else:

@@ -533,7 +533,11 @@ impl PyBatch {
     }
 
     fn restore(&self, py: Python<'_>, env: usize, snapshot: &[u8]) -> PyResult<()> {
-        self.with(py, |batch| Ok(batch.restore(env, snapshot)?))
+        self.with(py, |batch| {
+            batch
+                .restore(env, snapshot)
+                .map_err(crate::world::sound_fault)
+        })
     }
 
     fn clipped(&self, py: Python<'_>) -> PyResult<Vec<u64>> {

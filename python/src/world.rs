@@ -107,7 +107,7 @@ fn poisoned_world_fault() -> PyFault {
 }
 
 /// The fault of a sound that cannot be played: its file is one of the caller's own, and no house.
-fn sound_fault(error: WorldError) -> PyFault {
+pub(crate) fn sound_fault(error: WorldError) -> PyFault {
     match error {
         WorldError::Houses(HousesError::Io { path, source }) => PyFault::File { path, source },
         WorldError::Houses(error) => PyFault::Config(error.to_string()),
@@ -576,7 +576,9 @@ impl PyWorld {
                     .to_owned(),
             )));
         }
-        self.with(py, |running| Ok(running.world.restore(snapshot)?))
+        self.with(py, |running| {
+            running.world.restore(snapshot).map_err(sound_fault)
+        })
     }
 
     fn config(&self, py: Python<'_>) -> PyResult<PyValue> {

@@ -64,6 +64,10 @@ MOON = "world/gravity_m_s2"
             lambda: dwell.Head.measured(nested(5000), [], 44_100),
             "sources: expected real numbers, found a list that cannot be written out",
         ),
+        (
+            lambda: DwellEnv("PointNav", task_settings={"reward": [0.0, 2.5]}),
+            "reward is .0.0,2.5.: found sequence, expected values by name",
+        ),
         (lambda: DwellEnv(world={"laws": []}), "laws="),
         (lambda: DwellEnv(world={"parameters": {}}), "parameters="),
         (lambda: DwellVectorEnv(-1), "num_envs is -1"),

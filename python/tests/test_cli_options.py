@@ -86,7 +86,9 @@ def test_streams_that_are_closed_take_what_is_printed(command: str) -> None:
 
 
 @pytest.mark.skipif(not Path("/dev/full").exists(), reason="needs /dev/full")
-@pytest.mark.parametrize("command", ["--version", f"info {HOUSE} --json", f"describe {HOUSE}"])
+@pytest.mark.parametrize(
+    "command", ["--version", "--help", f"info {HOUSE} --json", f"describe {HOUSE}"]
+)
 def test_a_full_disk_behind_standard_output_is_named(command: str) -> None:
     done = in_shell(f"dwell {command} > /dev/full")
     assert done.returncode == 1

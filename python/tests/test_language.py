@@ -48,6 +48,42 @@ def test_what_is_not_understood_says_where() -> None:
         say(unsaid)
 
 
+def test_sentences_of_eighty_words_are_read_with_their_full_stop() -> None:
+    words = ["there", "is", "a", "chair", "on", "the", "left", "of", "the", "red", "chair"]
+    with pytest.raises(dwell.ConfigError, match="understood as far as"):
+        read(" ".join((words * 8)[:80]) + ".")
+    with pytest.raises(dwell.ConfigError, match="the text has 81 words; allowed are 80"):
+        read(" ".join((words * 8)[:81]) + ".")
+
+
+@pytest.mark.parametrize("text", ["The bed is bed.", "The sofa is rug."])
+def test_an_is_is_no_genitive(text: str) -> None:
+    with pytest.raises(dwell.ConfigError, match="nothing is defined that it could mean"):
+        read(text)
+    assert say(read("Find the plant's pot.")[0]) == "Find the pot from the plant."
+
+
+def test_the_listener_is_an_agent(world: dwell.World) -> None:
+    answer = world.check("You are in the kitchen.", viewer=0)["answer"]
+    assert answer["reason"] == "It is about who is spoken to, and no agent is given."
+
+
+def test_persons_are_among_the_people_of_a_house() -> None:
+    world = dwell.World("builtin:studio", agents=[{"kind": "person"}, {}])
+    (room,) = (
+        name for name in ("studio", "bathroom") if world.holds("in_room", "agent:0", f"room:{name}")
+    )
+    assert world.check(f"There is a person in the {room}.")["answer"]["truth"] is True
+    assert world.check("How many people are there?")["answer"] == {"number": 1}
+    who = world.check(f"Who is in the {room}?")["answer"]["things"]
+    assert [thing["name"] for thing in who] == ["agent:0"]
+
+
+def test_what_is_not_decided_has_its_reason() -> None:
+    answer = dwell.World(HOUSE).check("What is the largest thing in the kitchen?")["answer"]
+    assert "too close in the order to be told apart" in answer["reason"]
+
+
 def test_claims_are_those_of_the_predicates(world: dwell.World) -> None:
     names = {thing["name"]: thing for thing in world.objects()}
     on = [row for row in world.relations(["on"]) if row[0] in names and row[2] in names]

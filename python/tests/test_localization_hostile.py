@@ -170,7 +170,7 @@ def test_sound_files_have_a_rate_and_a_length_that_memory_holds(tmp_path: Path) 
     content = bytearray(sound.read_bytes())
     content[24:28] = struct.pack("<I", 0)
     sound.write_bytes(content)
-    with pytest.raises(dwell.ConfigError, match=r"a\.wav: 0 samples a second"):
+    with pytest.raises(dwell.MeasuredDataError, match=r"a\.wav: its head says 0 samples a second"):
         Pool(os.fspath(tmp_path))
 
 

@@ -15,6 +15,7 @@ from PIL import Image
 
 import dwell
 from dwell.localization.baselines import BASELINES, Blocks, blocks_of, fits
+from dwell.localization.clip_facts import class_count
 from dwell.localization.labels import Label, direction, write_labels
 from dwell.localization.layouts import PRESETS
 from dwell.localization.steering import harmonics, peaks, sphere
@@ -211,3 +212,11 @@ def test_wrong_requests_are_refused(
     done = command("localize", "score", data, *words)
     assert done.returncode == 1
     assert said in done.stderr
+
+
+def test_a_data_set_of_another_version_is_refused(tmp_path: Path) -> None:
+    (tmp_path / "dataset.json").write_text('{"version": 99}')
+    with pytest.raises(
+        dwell.ConfigError, match=r"dataset\.json: version is 99; this dwell reads 1"
+    ):
+        class_count(tmp_path)

@@ -390,7 +390,7 @@ def test_colours_are_drawn_or_stated() -> None:
         (lambda w: w.person_joints(1), "agent 1 is no person"),
         (lambda w: w.set_gesture(2), "no agent 2; there are 2, counted from 0"),
         (lambda w: w.set_gesture(0, look_at=(0.0, float("nan"), 0.0)), "look_at"),
-        (lambda w: w.set_gesture(0, left_hand=(1e9, 0.0, 0.0)), "left_hand of a gesture"),
+        (lambda w: w.set_gesture(0, left_hand=(1e9, 0.0, 0.0)), "left_hand is "),
         (lambda w: w.set_gesture(0, right_hand=(1.0, 2.0)), "right_hand"),
         (lambda w: w.set_gesture(0, pointing="up"), "pointing"),
     ],

@@ -4,6 +4,8 @@ from __future__ import annotations
 
 import dataclasses
 import json
+import os
+import sys
 from pathlib import Path
 from typing import Any
 
@@ -14,6 +16,7 @@ import pytest
 import dwell
 from dwell import cli, replays
 from dwell.envs import DwellEnv, DwellVectorEnv, ReplayRecorder, VectorReplayRecorder
+from dwell.files import atomic_write
 from dwell.sounds import read_wav
 
 pytestmark = pytest.mark.usefixtures("open_once")
@@ -121,6 +124,30 @@ def test_files_are_numbered_and_endings_write(tmp_path: Path) -> None:
     assert one == other
     assert one.instruction.endswith(".")
     env.close()
+
+
+def test_a_folder_is_the_one_that_it_was_when_it_was_named(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    monkeypatch.chdir(tmp_path)
+    env = ReplayRecorder(DwellEnv("Free", houses="builtin:studio", sensors=["gps"]), "here")
+    env.reset(seed=1)
+    env.step(1)
+    (tmp_path / "elsewhere").mkdir()
+    monkeypatch.chdir(tmp_path / "elsewhere")
+    env.close()
+    assert [path.name for path in (tmp_path / "here").iterdir()] == ["episode_0000.replay"]
+
+
+@pytest.mark.skipif(sys.platform == "win32", reason="modes of Unix")
+def test_files_are_as_private_as_the_system_says(tmp_path: Path) -> None:
+    before = os.umask(0o077)
+    try:
+        with atomic_write(tmp_path / "a.txt") as draft:
+            draft.write_text("a")
+    finally:
+        os.umask(before)
+    assert (tmp_path / "a.txt").stat().st_mode & 0o777 == 0o600
 
 
 def test_python_parts_are_asked_for_and_never_imported_by_a_file(tmp_path: Path) -> None:

@@ -266,6 +266,8 @@ SAYS: list[tuple[dict[str, Any], Callable[[Rows], object], str]] = [
     (DRIVE, lambda rows: scaled(rows, -1.0, 4), "headings grow clockwise"),
     (DRIVE, lambda rows: scaled(rows, -1.0, 5, 6), "count backwards"),
     (DRIVE, counted_on, "counted since the start"),
+    (DRIVE, lambda rows: scaled(rows, 1e-3, 5, 6), "way by the wheels over the tracker's is 0.00"),
+    (DRIVE, lambda rows: scaled(rows, 0.0, 5, 6), "way by the wheels over the tracker's is 0.000"),
 ]
 
 

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import os
 import struct
 import wave
 from pathlib import Path
@@ -57,6 +58,18 @@ def test_numbers_beyond_32_bits_are_refused(tmp_path: Path) -> None:
     path.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
     with pytest.raises(dwell.MeasuredDataError, match=r"sample 1 of channel 0 is 1e\+300"):
         read_wav(path)
+
+
+def test_a_snapshot_whose_sound_is_gone_is_refused(tmp_path: Path) -> None:
+    write_wav(tmp_path / "a.wav", SOUND[:1], 16_000)
+    world = dwell.World("builtin:studio", sound_root=tmp_path)
+    world.play("a.wav", at=(1.0, 1.0, 1.0), level_db=60.0)
+    saved, before = world.snapshot(), world.state_hash()
+    (tmp_path / "a.wav").unlink()
+    with pytest.raises(FileNotFoundError) as refused:
+        world.restore(saved)
+    assert os.fspath(refused.value.filename) == str(tmp_path / "a.wav")
+    assert world.state_hash() == before
 
 
 def test_files_are_those_of_the_format(tmp_path: Path) -> None:

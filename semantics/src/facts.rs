@@ -16,10 +16,12 @@ use dwell_scene::material::{Substance, library};
 use dwell_scene::{Aabb, House, MaterialId, ObjectId};
 use glam::Vec3;
 
-/// Share of the surface from which a substance gives a thing its adjective.
+/// Share of the surface, and of what is seen of it, from which a substance gives a thing its adjective.
 const MADE_OF_SHARE: f32 = 0.5;
 /// Height below which what files call a wardrobe is a cabinet, m: nothing hangs in it.
 const LEAST_WARDROBE_M: f32 = 1.3;
+/// Share of what is seen of a thing from which somebody may name a colour beside its main one.
+const TRACE_SHARE: f32 = 0.03;
 /// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
 const FRAME_SHARE: f32 = 0.1;
 
@@ -46,6 +48,8 @@ pub struct ObjectFacts {
     pub(crate) is_mostly_clear: bool,
     /// Its substances with their shares of the surface, largest first.
     pub substances: Vec<(&'static Substance, f32)>,
+    /// The substance of at least [`MADE_OF_SHARE`] of what is seen of it, as of its colours.
+    seen_substance: Option<&'static Substance>,
     /// Edges of the box around it in the axes of its root part, m.
     pub extents_m: Vec3,
     /// Its size for its kind.
@@ -85,6 +89,7 @@ impl ObjectFacts {
         let patches = patches(house, paints, &named);
         let pattern = pattern(paints, category, &named);
         let substances = substances(house, &areas);
+        let seen_substance = main_substance(house, shown);
         let mut colors = color_words(&patches, ColorVocabulary::Spoken);
         // Flowers have the colour of their petals.
         let is_petal = |(word, _): &(&str, f32)| !word.contains("green") && *word != "sage";
@@ -101,6 +106,7 @@ impl ObjectFacts {
             pattern,
             is_mostly_clear,
             substances,
+            seen_substance,
             extents_m,
             // Kinds within a category have no usual size in its table.
             size: SizeClass::of(extents_m, category.filter(|_| kind.is_none())),
@@ -158,6 +164,23 @@ impl ObjectFacts {
         shows_color(self.colors.iter().map(|(own, _)| *own), word)
     }
 
+    /// Returns whether at least [`TRACE_SHARE`] of what is seen of it has a colour, or one that some people call so.
+    pub(crate) fn shows_trace_of(&self, word: &str) -> bool {
+        let seen = self
+            .patches
+            .iter()
+            .filter(|patch| patch.share >= TRACE_SHARE);
+        let mut words = seen.filter_map(|patch| Some(ColorVocabulary::Spoken.word(patch.linear?)));
+        words.any(|own| own == word || speakers_disagree(own, word))
+    }
+
+    /// Returns whether some people would call it of a size: those who would if its edges were a fifth shorter or a quarter longer.
+    pub(crate) fn may_be_called_size(&self, size: SizeClass) -> bool {
+        let row = self.category.filter(|_| self.kind.is_none());
+        let scaled = |scale: &f32| SizeClass::of(self.extents_m * *scale, row);
+        [0.8, 1.0, 1.25].iter().map(scaled).any(|own| own == size)
+    }
+
     /// The colours a speaker would use: the one of most of the surface, else the two largest, as of a pattern; none without a surface,
     /// when no two cover most of it, for racks and what is mostly clear glass, and for pictures that are not nearly all of one or that one
     /// is the paper's.
@@ -181,11 +204,15 @@ impl ObjectFacts {
         }
     }
 
-    /// The adjective of its main substance; `None` when none prevails, when the kind of thing implies it
+    /// The adjective of its main substance; `None` when none prevails, or another in what is seen of it (a white wardrobe has oak sides), when the kind of thing implies it
     /// already, and for things with a part that stands for them.
     pub fn material_word(&self) -> Option<&'static str> {
         let (substance, share) = self.substances.first()?;
-        if self.category.and_then(defining_substance).is_some() || self.hides(substance) {
+        let is_seen = self
+            .seen_substance
+            .is_some_and(|own| own.name == substance.name);
+        if !is_seen || self.category.and_then(defining_substance).is_some() || self.hides(substance)
+        {
             return None;
         }
         let dull = [
@@ -446,6 +473,13 @@ fn pattern(
 }
 
 /// Substances by share of `areas`, largest first.
+/// The substance of at least [`MADE_OF_SHARE`] of `areas`.
+fn main_substance(house: &House, areas: &[(MaterialId, f32)]) -> Option<&'static Substance> {
+    let all = substances(house, areas);
+    let (substance, share) = all.first()?;
+    (*share >= MADE_OF_SHARE).then_some(*substance)
+}
+
 fn substances(house: &House, areas: &[(MaterialId, f32)]) -> Substances {
     let total: f32 = areas.iter().map(|(_, area)| area).sum();
     let mut substances: Substances = Vec::new();

@@ -14,6 +14,8 @@ pub enum UndecidedReason {
     UnknownTerm,
     /// It depends on a viewer, and none is given.
     NoViewer,
+    /// It is about the listener, and no agent is one.
+    NoListener,
     /// One of the things is not in front of the viewer.
     NotInFront,
     /// No predicate or order has this name.
@@ -58,6 +60,7 @@ impl UndecidedReason {
             Self::WrongKind => "It says nothing about such a kind of thing.",
             Self::UnknownTerm => "There is no such thing here.",
             Self::NoViewer => "It depends on where somebody looks from, and no viewer is given.",
+            Self::NoListener => "It is about who is spoken to, and no agent is given.",
             Self::NotInFront => "One of the things is not in front of the viewer.",
             Self::UnknownPredicate => "No relation of this name is defined here.",
             Self::SeveralFit => "Several things fit the description.",

@@ -11,7 +11,7 @@ use std::path::Path;
 
 /// Samples below which nothing can be predicted.
 const FEWEST_SAMPLES: usize = 42;
-/// Path length by the wheels above which it is compared with the tracker's, m.
+/// Path length by the wheels or the tracker above which the two are compared, m.
 const TELLING_WAY_M: f64 = 1.0;
 /// Ratios of the path length by the wheels to that by the tracker beyond which units or signs are wrong.
 /// A diameter in place of a radius is beyond them.
@@ -115,7 +115,8 @@ impl WheelAndTrackerPaths {
     fn check_agreement(&self, at: &str, is_along: bool) -> OdometryCheck {
         let is_right = |ratio: f64| (WAYS[0]..=WAYS[1]).contains(&ratio);
         let ratio = self.wheels_m / self.tracker_m;
-        if self.wheels_m.abs() <= TELLING_WAY_M || is_right(ratio) {
+        let longest_m = self.wheels_m.abs().max(self.tracker_m.abs());
+        if longest_m <= TELLING_WAY_M || is_right(ratio) {
             return Ok(());
         }
         let hint = if !is_along {

@@ -35,6 +35,7 @@ mod map_pictures;
 pub mod memory_estimate;
 pub mod metrics;
 mod motion_history;
+mod named_values;
 mod parse_settings;
 mod persons;
 mod plain_json_error;

@@ -1,8 +1,11 @@
 //! Settings from JSON, refused in plain words: the field, what was found, what is allowed.
 
 use crate::error::WorldError;
+use crate::named_values::list_for_names;
 use crate::plain_json_error::plain_json_error;
-use serde::de::DeserializeOwned;
+use crate::schema;
+use schemars::JsonSchema;
+use serde::de::{DeserializeOwned, Error as _, Unexpected};
 use serde_json::{Value, json};
 
 /// Values of a list or mapping beyond which none is looked for that cannot be read: each is tried.
@@ -12,10 +15,18 @@ const MOST_TRIED: usize = 64;
 ///
 /// # Errors
 /// [`WorldError::Settings`] names the field that cannot be read.
-pub(crate) fn parse_settings<T: DeserializeOwned>(
+pub(crate) fn parse_settings<T: DeserializeOwned + JsonSchema>(
     of: &'static str,
     value: &Value,
 ) -> Result<T, WorldError> {
+    if let Some((place, list)) = list_for_names(&schema::root::<T>(), value) {
+        let found = match &place[..] {
+            "" => list.to_string(),
+            place => format!("{place} is {list}"),
+        };
+        let error = serde_json::Error::invalid_type(Unexpected::Seq, &"values by name");
+        return Err(WorldError::Settings { of, found, error });
+    }
     serde_json::from_value(value.clone()).map_err(|error| {
         // A reader of the whole object does not report the field; reading one field alone does.
         let mut alone = value
@@ -35,7 +46,7 @@ pub(crate) fn parse_settings<T: DeserializeOwned>(
 ///
 /// # Errors
 /// Those of [`parse_settings`].
-pub(crate) fn parse_task_settings<T: DeserializeOwned + Default>(
+pub(crate) fn parse_task_settings<T: DeserializeOwned + JsonSchema + Default>(
     value: &Value,
 ) -> Result<T, WorldError> {
     if value.is_null() {
@@ -135,7 +146,7 @@ mod tests {
     use super::*;
     use serde::Deserialize;
 
-    #[derive(Debug, Default, Deserialize)]
+    #[derive(Debug, Default, Deserialize, JsonSchema)]
     #[serde(default, deny_unknown_fields)]
     struct SampleSettings {
         width: u32,

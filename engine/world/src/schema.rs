@@ -81,7 +81,7 @@ pub(crate) fn field_names<'de, T: Deserialize<'de>>() -> &'static [&'static str]
     names
 }
 
-fn root<T: JsonSchema>() -> Value {
+pub(crate) fn root<T: JsonSchema>() -> Value {
     let settings =
         SchemaSettings::draft2020_12().with(|settings| settings.inline_subschemas = true);
     settings

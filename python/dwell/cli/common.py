@@ -223,6 +223,7 @@ class Printable:
         """Writes to ``stream``, which goes on taking anything itself; errors call it ``name``."""
         self.stream = stream
         self._name = name
+        self._failed: OSError | None = None
 
     def write(self, text: str) -> int:
         """Passes text on."""
@@ -231,9 +232,15 @@ class Printable:
         return len(text)
 
     def flush(self) -> None:
-        """Writes what waits in a buffer."""
+        """Writes what waits in a buffer.
+
+        Raises:
+            OSError: Now, or at an earlier call, whose caller may have passed over it.
+        """
         with self._named():
             self.stream.flush()
+        if self._failed is not None:
+            raise self._failed
 
     def discard(self) -> None:
         """Lets what waits in a buffer go nowhere: the interpreter would fail on it as it ends."""
@@ -248,6 +255,7 @@ class Printable:
             yield
         except OSError as error:
             error.filename = error.filename or self._name
+            self._failed = error
             raise
 
     def __getattr__(self, name: str) -> Any:  # noqa: ANN401 - whatever the stream has

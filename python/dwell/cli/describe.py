@@ -9,8 +9,9 @@ import sys
 from typing import TYPE_CHECKING, Any
 
 from dwell.cli.common import ProgressBar, count, path
-from dwell.cli.job_journal import VERSION, Journal, contents_of, is_of_files
+from dwell.cli.job_journal import Journal, contents_of, is_of_files
 from dwell.files import open_file
+from dwell.result_version import VERSION
 
 if TYPE_CHECKING:
     from collections.abc import Iterator

@@ -19,8 +19,9 @@ from typing import Any
 from dwell import _native
 from dwell.arguments import integer_in_range, text
 from dwell.cli.common import ProgressBar, count, count_from_1, path, print_json, shard, workers
-from dwell.cli.job_journal import VERSION, Journal, claim, refuse_other_version
+from dwell.cli.job_journal import Journal, claim
 from dwell.files import MAX_TEXT_BYTES, lines, open_file, parse_json, read, read_json
+from dwell.result_version import VERSION, refuse_other_version
 from dwell.workers import thread_count, thread_pool
 
 _FORMS = ("dwell", "suncg", "glb")

@@ -22,6 +22,7 @@ from dwell.files import (
     parse_json,
     read_json,
 )
+from dwell.result_version import VERSION, refuse_other_version
 
 _JOB, _DONE, _OF, _SUM = "job", "done", "of", "sum"
 #: What differs between two jobs and is told of.
@@ -30,8 +31,6 @@ _MOST_DIFFERENCES = 3
 _NAME_BYTES = 230
 #: What is the same for a whole folder; it stands there from the beginning.
 _DATASET = "dataset.json"
-#: The version of its form, and of the rows of a job's result; older files do not say it.
-VERSION = 1
 
 
 def claim(out: Path, dataset: dict[str, Any]) -> None:
@@ -95,17 +94,6 @@ def refuse_other(out: Path, dataset: dict[str, Any]) -> None:
     if other:
         said = ", ".join(f"{key} {found.get(key)!r:.60}" for key in other)
         raise ValueError(f"{out} was begun with {said}; give another --out, or the same again")
-
-
-def refuse_other_version(at: str, found: dict[str, Any]) -> None:
-    """Refuses what a newer release wrote.
-
-    Raises:
-        ValueError: It says another version than this dwell reads.
-    """
-    version = found.get("version", VERSION)
-    if version != VERSION or isinstance(version, bool):
-        raise ValueError(f"{at}: version is {quoted(version)}; this dwell reads {VERSION}")
 
 
 def _hidden_name(name: str) -> str:

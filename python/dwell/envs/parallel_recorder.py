@@ -66,7 +66,7 @@ class ParallelReplayRecorder(BaseParallelWrapper):  # type: ignore[misc] # untyp
         super().__init__(env)
         self._env = own
         refuse_what_files_cannot_name(own)
-        self._folder = Path(file_path("folder", folder))
+        self._folder = Path(file_path("folder", folder)).absolute()
         make_folder(self._folder)
         self._running: EpisodeOfAgents | None = None
         #: Why no further step of the episode is recorded.

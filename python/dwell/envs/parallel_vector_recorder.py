@@ -59,7 +59,7 @@ class ParallelVectorReplayRecorder:
         #: The environments.
         self.env = env
         refuse_what_files_cannot_name(env)
-        self._folder = Path(file_path("folder", folder))
+        self._folder = Path(file_path("folder", folder)).absolute()
         make_folder(self._folder)
         self._running: dict[int, EpisodeOfAgents] = {}
         env._recorders.append(self)

@@ -229,7 +229,7 @@ class ReplayRecorder(gymnasium.Wrapper[dict[str, Any], Any, dict[str, Any], Any]
         super().__init__(env)
         self._env = env.unwrapped
         refuse_what_files_cannot_name(self._env)
-        self._folder = Path(file_path("folder", folder))
+        self._folder = Path(file_path("folder", folder)).absolute()
         make_folder(self._folder)
         self._running: _EpisodeInProgress | None = None
         #: Why no further step of the episode is recorded.
@@ -321,7 +321,7 @@ class VectorReplayRecorder(VectorWrapper[dict[str, Any], Any, dict[str, Any], An
         super().__init__(env)
         self._envs = env.unwrapped
         refuse_what_files_cannot_name(self._envs)
-        self._folder = Path(file_path("folder", folder))
+        self._folder = Path(file_path("folder", folder)).absolute()
         make_folder(self._folder)
         self._running: dict[int, _EpisodeInProgress] = {}
         self._envs._recorders.append(self)

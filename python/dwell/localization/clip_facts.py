@@ -19,6 +19,7 @@ from dwell.arguments import (
 )
 from dwell.files import read_json
 from dwell.localization.settings import RATES_HZ
+from dwell.result_version import refuse_other_version
 
 #: How much of a source is hidden.
 OCCLUSIONS = ("none", "edge", "wall", "all")
@@ -44,12 +45,13 @@ def class_count(folder: Path) -> int | None:
     """How many classes a data set has; ``None`` where it does not say.
 
     Raises:
-        ConfigError: What it says is no list.
+        ConfigError: What it says is no list, or of another version.
         OSError: The system refuses.
     """
     path = folder / "dataset.json"
     try:
         found = mapping(os.fspath(path), read_json(path))
+        refuse_other_version(os.fspath(path), found)
     except FileNotFoundError:
         return None
     except ValueError as error:

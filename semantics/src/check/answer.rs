@@ -54,17 +54,24 @@ impl Checker<'_> {
                 }
             }
             Question::Which { kind, clause } => {
-                let candidates = match kind {
-                    Some(kind) => self.extension(kind).fits.clone(),
-                    None => self.scene.house().objects.ids().map(Term::Object).collect(),
-                };
                 // "What is on the table?" of several tables has no answer unless something is on all of them.
                 let mut open = None;
+                let candidates = match kind {
+                    Some(kind) => {
+                        let extension = self.extension(kind);
+                        let undecided = extension.undecided.first().map(|(_, reason)| *reason);
+                        open = extension.fault.or(undecided);
+                        extension.fits.clone()
+                    }
+                    None => self.scene.house().objects.ids().map(Term::Object).collect(),
+                };
                 let fits = |term: &Term| {
                     self.hole.set(Some(*term));
                     let truth = self.judge(clause).truth;
                     if let Truth::Undecided(
-                        reason @ (UndecidedReason::SeveralFit | UndecidedReason::NoViewer),
+                        reason @ (UndecidedReason::SeveralFit
+                        | UndecidedReason::NoViewer
+                        | UndecidedReason::NoListener),
                     ) = truth
                     {
                         open.get_or_insert(reason);

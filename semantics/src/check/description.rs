@@ -2,6 +2,7 @@
 
 use super::Checker;
 use super::witness::WitnessedTruth;
+use crate::category::categories;
 use crate::form::{Description, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier};
 use crate::predicates::{self, Predicate};
 use crate::scene::Term;
@@ -115,7 +116,8 @@ impl Checker<'_> {
         match noun {
             Noun::Object(noun) => {
                 let kinds = self.scene.distractors(noun);
-                kinds.things.iter().map(|id| Term::Object(*id)).collect()
+                let things = kinds.things.iter().map(|id| Term::Object(*id));
+                things.chain(self.persons_called(noun)).collect()
             }
             Noun::Structure(noun) => {
                 let pieces = self.scene.house().structure.iter_ids();
@@ -131,6 +133,15 @@ impl Checker<'_> {
                 rooms.map(Term::Room).collect()
             }
         }
+    }
+
+    /// The agents with the body of a person, where a person may be called `noun`.
+    fn persons_called(&self, noun: &str) -> impl Iterator<Item = Term> {
+        let row = categories().get("person");
+        let is_called = row.is_some_and(|row| row.singular == noun || row.synonyms.contains(&noun));
+        let agents = self.scene.state.agents.iter_ids();
+        let persons = agents.filter(move |(_, agent)| is_called && agent.body.person.is_some());
+        persons.map(|(id, _)| Term::Agent(id))
     }
 
     fn fits(&self, description: &Description, term: Term) -> Truth {

@@ -294,7 +294,7 @@ impl<'a> Checker<'a> {
             }
             Phrase::Listener => {
                 let agent = self.listener.agent.map(Term::Agent);
-                agent.ok_or(UndecidedReason::NoViewer)
+                agent.ok_or(UndecidedReason::NoListener)
             }
             Phrase::Storey(number) => house
                 .levels

@@ -36,6 +36,17 @@ impl Tree {
         }
     }
 
+    /// Returns whether a function stands anywhere in it.
+    pub fn has_function(&self, is_it: &impl Fn(&str) -> bool) -> bool {
+        match self {
+            Self::Apply {
+                function,
+                arguments,
+            } => is_it(function) || arguments.iter().any(|one| one.has_function(is_it)),
+            Self::Entry { .. } | Self::Number { .. } => false,
+        }
+    }
+
     /// Returns a function applied to arguments.
     pub fn apply(function: &str, arguments: impl Into<Vec<Self>>) -> Self {
         Self::Apply {

@@ -188,10 +188,13 @@ impl Language {
         if words.is_empty() {
             return Err(ParseError::Empty);
         }
-        if words.len() > MAX_WORDS {
-            return Err(too_long("words", words.len(), MAX_WORDS));
+        let is_word = |word: &&String| word.chars().any(char::is_alphanumeric);
+        let count = words.iter().filter(is_word).count();
+        if count > MAX_WORDS || words.len() > 2 * MAX_WORDS {
+            return Err(too_long("words", count.max(MAX_WORDS + 1), MAX_WORDS));
         }
-        let read = self.read_words(&words);
+        let has_genitive = words.iter().any(|word| word.ends_with("'s"));
+        let read = self.read_words(&words, has_genitive);
         // "The lamp stands on the floor" is no plural of "lamp stand".
         let is_sentence = |read: &Result<Readings, ParseError>| {
             let first = read.as_ref().ok().and_then(|read| read.forms.first());
@@ -208,7 +211,7 @@ impl Language {
             if other == words || other.is_empty() {
                 continue;
             }
-            let other = self.read_words(&other);
+            let other = self.read_words(&other, has_genitive);
             if is_sentence(&other) {
                 return other;
             }
@@ -224,7 +227,8 @@ impl Language {
         best
     }
 
-    fn read_words(&self, words: &[String]) -> Result<Readings, ParseError> {
+    /// `has_genitive`: whether an "is" may be the ending of "the plant's pot".
+    fn read_words(&self, words: &[String], has_genitive: bool) -> Result<Readings, ParseError> {
         let mut unknown: Vec<UnknownWord> = Vec::new();
         for word in words {
             let is_told = unknown.iter().any(|one| one.word == *word);
@@ -240,7 +244,10 @@ impl Language {
         }
         let parse = self.grammar.parse(words);
         // "The chair near the table larger than the bed" compares the chair: few describe a landmark by a comparison.
-        let forms = parse.trees.iter().filter_map(|(cost, tree)| {
+        let is_genitive = |function: &str| function.ends_with("genitive");
+        let trees = parse.trees.iter();
+        let trees = trees.filter(|(_, tree)| has_genitive || !tree.has_function(&is_genitive));
+        let forms = trees.filter_map(|(cost, tree)| {
             let form = from_tree::form(&plurals::resolve_plurals(tree.clone()))?;
             // "The TV stands in front of the window" is no plural of "TV stand".
             let phrase = usize::from(matches!(form, Form::NounPhrase(_)));

@@ -6,6 +6,7 @@ use crate::predicates;
 use crate::scene::{
     Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs, SemanticScene,
 };
+use crate::size::SizeClass;
 use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::{ObjectId, RoomId};
 use std::cell::{OnceCell, RefCell};
@@ -95,11 +96,20 @@ impl DistractorSet {
             for id in self.things.iter().copied() {
                 pace.count_one();
                 let facts = scene.facts(id);
-                push(&mut lists, Attribute::Size(facts.size), id);
+                for size in SizeClass::ALL {
+                    if facts.may_be_called_size(size) {
+                        push(&mut lists, Attribute::Size(size), id);
+                    }
+                }
                 // Also the words on which people divide: what some would call white is not told apart from it as the white one.
-                let words = words.iter().filter(|_| !facts.colors.is_empty());
-                for word in words.filter(|word| !facts.shows_color(word).is_false()) {
-                    push(&mut lists, Attribute::Color((*word).to_owned()), id);
+                for word in words.iter().filter(|_| !facts.colors.is_empty()) {
+                    let shows = !facts.shows_color(word).is_false();
+                    if shows {
+                        push(&mut lists, Attribute::Color((*word).to_owned()), id);
+                    }
+                    if shows || facts.shows_trace_of(word) {
+                        push(&mut lists, Attribute::TraceOfColor((*word).to_owned()), id);
+                    }
                 }
                 for word in facts.material_words() {
                     push(&mut lists, Attribute::Material(word.to_owned()), id);
@@ -123,7 +133,12 @@ impl DistractorSet {
         scene: &SemanticScene<'_>,
         description: &Description,
     ) -> ObjectList {
-        let colors = description.colors.iter().cloned().map(Attribute::Color);
+        let colors = description.colors.iter().cloned().enumerate();
+        // The worktop of one unit makes it no other than the next one, whose worktop is narrower.
+        let colors = colors.map(|(k, word)| match k {
+            0 => Attribute::Color(word),
+            _ => Attribute::TraceOfColor(word),
+        });
         let material = description.material.iter().cloned();
         let material = material.map(Attribute::Material);
         let size = description.size.map(Attribute::Size);
@@ -190,11 +205,18 @@ impl DistractorSet {
             return known.clone();
         }
         let pairs = self.pairs(scene);
-        let name = TELLING.iter().find(|name| **name == modifier.predicate);
+        // What stands on a bookcase is not told by that from what stands in one.
+        let names: &[&'static str] = match modifier.predicate.as_str() {
+            "in" | "on" => &["in", "on"],
+            name => TELLING
+                .iter()
+                .find(|own| **own == name)
+                .map_or(&[], std::slice::from_ref),
+        };
         let mut found: Vec<ObjectId> = Vec::new();
         for kind in scene.semantics.kinds_called(noun) {
-            let pairs = name.and_then(|name| pairs.get(&(*name, kind)));
-            for (id, other) in pairs.into_iter().flatten() {
+            let pairs = names.iter().filter_map(|name| pairs.get(&(*name, kind)));
+            for (id, other) in pairs.flatten() {
                 if found.last() != Some(id) && scene.facts(*other).may_match_properties(landmark) {
                     found.push(*id);
                 }

@@ -60,10 +60,16 @@ pub(crate) fn property_descriptions(
     found
 }
 
+/// Share of a thing's longest edge below which what lies beside it does not lead to it.
+const LEAST_LANDMARK: f32 = 0.25;
+/// Nouns of things that readers also call by another: flowers stand in vases.
+const LOOK_ALIKES: [(&str, &str); 1] = [("vase", "bunch of flowers")];
+
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
 pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
     let mut found: Vec<Modifier> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
+    let longest = |id| scene.facts(id).extents_m.max_element();
     for name in TELLING {
         let Ok(predicate) = predicates::find(name) else {
             continue;
@@ -73,6 +79,7 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
             if row.is_none_or(SemanticCategory::is_vague)
                 || scene.facts(landmark).belongs_to_opening()
                 || (name == "in" && scene.is_seat_or_bed(landmark))
+                || (name == "next_to" && longest(landmark) < LEAST_LANDMARK * longest(target))
             {
                 continue;
             }
@@ -121,7 +128,13 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     // All candidates share the noun, so only things that it may name can fit them.
     let facts = scene.facts(target);
     let alike = scene.distractors(&facts.noun);
-    let unique = |description: &Description| *alike.matching(scene, description) == [target];
+    let looks_like = |(noun, other): &(&str, &str)| {
+        *noun == facts.noun && !scene.distractors(other).things.is_empty()
+    };
+    let has_look_alike = LOOK_ALIKES.iter().any(looks_like);
+    let unique = |description: &Description| {
+        !has_look_alike && *alike.matching(scene, description) == [target]
+    };
     let room = scene.room_of(target).map(|room| {
         let facts = scene.semantics.room(room);
         // "A bedroom" of several: no list of the house's own numbers them for whoever reads it.

@@ -10,6 +10,8 @@ use std::rc::Rc;
 #[derive(Clone, Debug, PartialEq, Eq, PartialOrd, Ord)]
 pub(crate) enum Attribute {
     Color(String),
+    /// A colour that somebody may see on it, be it little.
+    TraceOfColor(String),
     Material(String),
     Size(SizeClass),
     Room(String),

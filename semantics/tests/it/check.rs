@@ -380,7 +380,7 @@ fn what_cannot_be_asked_is_undecided_with_its_reason() {
     );
     assert_eq!(
         reason("You are near a chair."),
-        Some(UndecidedReason::NoViewer)
+        Some(UndecidedReason::NoListener)
     );
     assert_eq!(
         reason("Object 99999 is red."),

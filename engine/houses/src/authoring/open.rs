@@ -92,6 +92,13 @@ impl HousePlan {
     /// # Errors
     /// [`HousesError::Syntax`], [`HousesError::Field`] for another format, [`HousesError::Version`].
     pub fn from_json(text: &[u8], at: &FileLocation) -> Result<Self, HousesError> {
+        if text.trim_ascii_start().starts_with(b"[") {
+            return Err(HousesError::Syntax {
+                at: at.clone(),
+                message: "found a list; expected an object with format, version and rooms"
+                    .to_owned(),
+            });
+        }
         let plan: Self = json::from_slice(text).map_err(|error| {
             edit_name_count_error(text, at).unwrap_or_else(|| json::syntax(at)(error))
         })?;

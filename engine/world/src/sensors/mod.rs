@@ -448,7 +448,9 @@ fn unknown<'a>(
 }
 
 /// Reads a sensor's settings; `null` counts as `{}`.
-pub(crate) fn parse_sensor_settings<T: serde::de::DeserializeOwned + Default>(
+pub(crate) fn parse_sensor_settings<
+    T: serde::de::DeserializeOwned + schemars::JsonSchema + Default,
+>(
     value: &serde_json::Value,
 ) -> Result<T, WorldError> {
     if value.is_null() {

@@ -166,9 +166,9 @@ impl Playback {
         saved: PlaybackState,
     ) -> Result<Self, WorldError> {
         check_place(engines.house(), state, &saved.request.place)?;
-        let (signal, print) = open(engines, root, rate_hz, &saved.request.sound)?;
+        let sound = &saved.request.sound;
+        let (signal, print) = open(engines, root, rate_hz, sound)?;
         if print != saved.content_hash {
-            let sound = &saved.request.sound;
             return Err(WorldError::Snapshot(format!(
                 "{sound} is another sound now than the one that played"
             )));
