@@ -159,6 +159,28 @@ def test_what_is_out_of_sight_is_none_of_a_view() -> None:
     assert claim["status"] == "true"
 
 
+def test_the_walls_are_those_of_the_room_of_who_looks() -> None:
+    world = dwell.World("builtin:studio", agents=0)
+    rooms = [row for row in world.house.rooms() if row["kinds"][0] != "storage"]
+    assert len(rooms) == 4
+    for room in rooms:
+        noun, viewer = room["kinds"][0], {"position": room["eye"], "yaw_deg": room["yaw_deg"]}
+        for color in ("white", "brown"):
+            answer = world.check(f"Every wall of the {noun} is {color}.")["answer"]["truth"]
+            (claim,) = world.check_text(f"The walls are {color}.", viewer=viewer)["claims"]
+            assert claim["status"] == {True: "true", False: "false", None: "undecided"}[answer]
+
+
+def test_the_page_has_the_counts_of_its_run(capsys: pytest.CaptureFixture[str]) -> None:
+    root = Path(__file__).parents[2]
+    rows = root / "examples" / "captions" / "captions.jsonl"
+    cli.main(["check-text", "builtin:apartment", "--json", "--file", str(rows)])
+    found = json.loads(capsys.readouterr().out)
+    counts = [found["counts"][key] for key in ("true", "false", "undecided", "not_understood")]
+    page = (root / "docs" / "scoring-captions.md").read_text("utf-8")
+    assert f"| {' | '.join(map(str, (sum(counts), *counts)))} |" in page
+
+
 def test_the_command_judges_files_and_views(
     tmp_path: Path, capsys: pytest.CaptureFixture[str]
 ) -> None:

@@ -176,6 +176,9 @@ impl Checker<'_> {
         let Ok(predicate) = predicates::find(&modifier.predicate) else {
             return Truth::Undecided(UndecidedReason::UnknownPredicate);
         };
+        if let Some(truth) = self.is_room_of_viewer(modifier, term) {
+            return if modifier.negated { !truth } else { truth };
+        }
         let body = |terms: &[Term]| {
             let truth = predicate.holds(self.scene, terms, self.listener.viewer.as_ref());
             WitnessedTruth::without_witnesses(truth)
@@ -191,6 +194,17 @@ impl Checker<'_> {
                 .truth
         });
         if modifier.negated { !truth } else { truth }
+    }
+
+    /// Returns whether a room is that of whoever looks, for "the room with you" where no agent is spoken to; `None` for all else.
+    fn is_room_of_viewer(&self, modifier: &Modifier, term: Term) -> Option<Truth> {
+        let is_meant = modifier.predicate == "room_contains"
+            && modifier.arguments == [Phrase::Listener]
+            && self.listener.agent.is_none();
+        let viewer = self.listener.viewer.as_ref().filter(|_| is_meant)?;
+        let eye = viewer.world_from_camera.position;
+        let room = self.scene.house().room_at(eye).map(Term::Room);
+        Some(Truth::from(room == Some(term)))
     }
 
     /// Returns whether `term` has a listed relation to something that a landmark fits, without a test of each of these: of few things

@@ -2,12 +2,14 @@
 
 use super::distractors::{TELLING, intersection};
 use crate::category::SemanticCategory;
+use crate::color::Oklab;
 use crate::form::{Description, Modifier, Noun, Quantifier};
 use crate::predicates;
-use crate::scene::{ObjectList, SemanticScene};
+use crate::scene::{DistractorSet, ObjectList, SemanticScene};
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
 use std::collections::BTreeSet;
+use std::rc::Rc;
 
 /// The descriptions of `target` by its own properties, shortest first.
 pub(crate) fn property_descriptions(
@@ -62,8 +64,18 @@ pub(crate) fn property_descriptions(
 
 /// Share of a thing's longest edge below which what lies beside it does not lead to it.
 const LEAST_LANDMARK: f32 = 0.25;
-/// Nouns of things that readers also call by another: flowers stand in vases.
-const LOOK_ALIKES: [(&str, &str); 1] = [("vase", "bunch of flowers")];
+/// Nouns of things that readers also call by another, and whether such things have their own colour: flowers stand in vases of any.
+const LOOK_ALIKES: [(&str, &str, bool); 6] = [
+    ("vase", "bunch of flowers", false),
+    ("kitchen unit", "wall cabinet", true),
+    ("kitchen unit", "kitchen cabinet", true),
+    ("kitchen cabinet", "wall cabinet", true),
+    ("kitchen cabinet", "kitchen unit", true),
+    ("wall cabinet", "kitchen cabinet", true),
+];
+/// Distance of the main colours of two things, in `OKLab`, below which readers do not tell them apart by these: three times what is just
+/// noticeable.
+const ALIKE: f32 = 0.06;
 
 /// The relations of `target` to other things, each named by its noun and at most one adjective; each once.
 pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) -> Vec<Modifier> {
@@ -102,6 +114,16 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
     found
 }
 
+/// Returns whether the main colours of two things are too near to tell them apart.
+fn is_of_color_of(scene: &SemanticScene<'_>, one: ObjectId, other: ObjectId) -> bool {
+    let main = |id| {
+        let patch = scene.facts(id).patches.first()?;
+        Some(Oklab::from_linear(patch.linear?))
+    };
+    let near = main(one).zip(main(other));
+    near.is_some_and(|(one, other)| one.distance(other) < ALIKE)
+}
+
 /// The same relation with "the" before a landmark that is the only one of its description in the house.
 fn with_article(scene: &SemanticScene<'_>, relation: Modifier) -> Modifier {
     let [crate::form::Phrase::Described(landmark)] = &relation.arguments[..] else {
@@ -128,12 +150,42 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     // All candidates share the noun, so only things that it may name can fit them.
     let facts = scene.facts(target);
     let alike = scene.distractors(&facts.noun);
-    let looks_like = |(noun, other): &(&str, &str)| {
-        *noun == facts.noun && !scene.distractors(other).things.is_empty()
+    let look_alikes = LOOK_ALIKES.iter().filter(|(noun, ..)| *noun == facts.noun);
+    let look_alikes: Vec<_> = look_alikes
+        .map(|(_, other, colored)| (scene.distractors(other), *colored))
+        .collect();
+    // Those of another noun that a description may be taken to mean.
+    let confused = |description: &Description| -> Vec<ObjectList> {
+        let of = |(things, colored): &(Rc<DistractorSet>, bool)| {
+            let mut seen = description.clone();
+            if !colored {
+                seen.colors.clear();
+            }
+            things.matching(scene, &seen)
+        };
+        look_alikes.iter().map(of).collect()
     };
-    let has_look_alike = LOOK_ALIKES.iter().any(looks_like);
+    let fitting = |description: &Description| -> ObjectList {
+        let mut found = alike.matching(scene, description).to_vec();
+        if !description.colors.is_empty() {
+            let plain = Description {
+                colors: Vec::new(),
+                ..description.clone()
+            };
+            let others = alike.matching(scene, &plain);
+            found.extend(
+                others
+                    .iter()
+                    .filter(|other| is_of_color_of(scene, **other, target)),
+            );
+            found.sort_unstable();
+            found.dedup();
+        }
+        found.into()
+    };
     let unique = |description: &Description| {
-        !has_look_alike && *alike.matching(scene, description) == [target]
+        let others = confused(description);
+        *fitting(description) == [target] && others.iter().all(|things| things.is_empty())
     };
     let room = scene.room_of(target).map(|room| {
         let facts = scene.semantics.room(room);
@@ -170,9 +222,14 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
     });
     let marked: Vec<ObjectList> = marked.collect();
     for description in own.iter().chain(&in_room).take(8) {
-        let fitting = alike.matching(scene, description);
+        let (fitting, confused) = (fitting(description), confused(description));
         for (relation, marked) in relations.iter().zip(&marked) {
-            if intersection(&[&fitting, marked], 2) == [target] {
+            let is_taken = |(things, own): (&ObjectList, &(Rc<DistractorSet>, bool))| {
+                let marked = own.0.with_landmark(scene, relation);
+                !intersection(&[things, &marked], 1).is_empty()
+            };
+            let only = intersection(&[&fitting, marked], 2) == [target];
+            if only && !confused.iter().zip(&look_alikes).any(is_taken) {
                 let mut description = description.clone();
                 let relation = with_article(scene, relation.clone());
                 // "The lamp on the table in the kitchen": the relation before the room.
