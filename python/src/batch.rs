@@ -534,9 +534,7 @@ impl PyBatch {
 
     fn restore(&self, py: Python<'_>, env: usize, snapshot: &[u8]) -> PyResult<()> {
         self.with(py, |batch| {
-            batch
-                .restore(env, snapshot)
-                .map_err(crate::world::sound_fault)
+            batch.restore(env, snapshot).map_err(PyFault::of_sound)
         })
     }
 

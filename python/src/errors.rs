@@ -43,6 +43,17 @@ pub(crate) enum PyFault {
     Interrupted,
 }
 
+impl PyFault {
+    /// The fault of a sound that cannot be played: its file is one of the caller's own, and no house.
+    pub(crate) fn of_sound(error: WorldError) -> Self {
+        match error {
+            WorldError::Houses(HousesError::Io { path, source }) => Self::File { path, source },
+            WorldError::Houses(error) => Self::Config(error.to_string()),
+            other => other.into(),
+        }
+    }
+}
+
 /// The exceptions with two bases, made once.
 static KINDS: PyOnceLock<Vec<(&'static str, Py<PyType>)>> = PyOnceLock::new();
 

@@ -13,8 +13,7 @@ use crate::picture;
 use crate::values::JsonArgument;
 use crate::world_access::{ActiveGuide, WorldAccess};
 use dwell::{DiscreteAction, HandActionRequest, ShortestPathFollower, World, WorldConfig};
-use dwell::{PlayRequest, SoundPlace, WorldError};
-use dwell_houses::HousesError;
+use dwell::{PlayRequest, SoundPlace};
 use dwell_physics::{AgentControl, AgentPlacement, BodyState};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
@@ -104,15 +103,6 @@ impl PyWorld {
 
 fn poisoned_world_fault() -> PyFault {
     PyFault::Usage("a bug of the engine stopped this world; make a new one".to_owned())
-}
-
-/// The fault of a sound that cannot be played: its file is one of the caller's own, and no house.
-pub(crate) fn sound_fault(error: WorldError) -> PyFault {
-    match error {
-        WorldError::Houses(HousesError::Io { path, source }) => PyFault::File { path, source },
-        WorldError::Houses(error) => PyFault::Config(error.to_string()),
-        other => other.into(),
-    }
 }
 
 #[pymethods]
@@ -320,7 +310,7 @@ impl PyWorld {
                 level_db,
                 loops: row.loops,
             };
-            running.world.play(request).map_err(sound_fault)
+            running.world.play(request).map_err(PyFault::of_sound)
         })
     }
 
@@ -577,7 +567,7 @@ impl PyWorld {
             )));
         }
         self.with(py, |running| {
-            running.world.restore(snapshot).map_err(sound_fault)
+            running.world.restore(snapshot).map_err(PyFault::of_sound)
         })
     }
 
