@@ -290,6 +290,11 @@ impl ObjectFacts {
             && description.size.is_none_or(|size| self.size == size)
     }
 
+    /// Returns whether it is a rug, on which things stand as on the floor.
+    pub(crate) fn is_rug(&self) -> bool {
+        self.category.is_some_and(|row| row.name == "rug")
+    }
+
     /// Returns whether it belongs to a hole in a wall: a door, a window, a curtain. It marks no place of other things.
     pub fn belongs_to_opening(&self) -> bool {
         let classes = ["door", "window", "curtain", "blinds"];

@@ -17,11 +17,6 @@ use dwell_scene::interrupt;
 use dwell_scene::{ObjectId, RoomId};
 use std::collections::{BTreeMap, BTreeSet};
 
-pub(super) fn is_rug(scene: &SemanticScene<'_>, object: ObjectId) -> bool {
-    let row = scene.facts(object).category;
-    row.is_some_and(|row| row.name == "rug")
-}
-
 /// Says the room's area.
 fn say_area(writer: &mut TextWriter<'_>, scene: &SemanticScene<'_>, room: RoomId) {
     writer.say(Form::Claim(Clause::Area {
@@ -81,7 +76,7 @@ fn contents(scene: &SemanticScene<'_>, room: RoomId, objects: &[ObjectId]) -> Ro
             Some((carrier, name))
         });
         // Furniture on a rug stands in the room.
-        if let Some(key) = carrier.filter(|(carrier, _)| !is_rug(scene, *carrier)) {
+        if let Some(key) = carrier.filter(|(carrier, _)| !scene.facts(*carrier).is_rug()) {
             contents.carried.entry(key).or_default().push(*object);
             continue;
         }

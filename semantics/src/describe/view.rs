@@ -2,7 +2,7 @@
 
 use super::item::{grouped, items};
 use super::options::{TextLength, TextOptions, TextStyle};
-use super::room::{is_rug, surfaces};
+use super::room::surfaces;
 use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Addressee, Checker, rounded_distance_m};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
@@ -139,7 +139,7 @@ impl ViewTeller<'_, '_> {
             let others = predicates::related_objects(self.scene(), predicate, object);
             let carrier = others.into_iter().find(|other| {
                 self.told.binary_search(other).is_ok()
-                    && !is_rug(self.scene(), *other)
+                    && !self.scene().facts(*other).is_rug()
                     && self.name(*other).is_some()
             })?;
             Some((carrier, name))

@@ -65,7 +65,8 @@ pub(crate) fn property_descriptions(
 /// Share of a thing's longest edge below which what lies beside it does not lead to it.
 const LEAST_LANDMARK: f32 = 0.25;
 /// Nouns of things that readers also call by another, and whether such things have their own colour: flowers stand in vases of any.
-const LOOK_ALIKES: [(&str, &str, bool); 6] = [
+const LOOK_ALIKES: [(&str, &str, bool); 7] = [
+    ("book", "row of books", true),
     ("vase", "bunch of flowers", false),
     ("kitchen unit", "wall cabinet", true),
     ("kitchen unit", "kitchen cabinet", true),
@@ -82,6 +83,8 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
     let mut found: Vec<Modifier> = Vec::new();
     let mut known: BTreeSet<(&str, &str, Option<&str>)> = BTreeSet::new();
     let longest = |id| scene.facts(id).extents_m.max_element();
+    // Nobody looks for the bread on a table beside a chair.
+    let own_carrier = carrier(scene, target);
     for name in TELLING {
         let Ok(predicate) = predicates::find(name) else {
             continue;
@@ -92,6 +95,7 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
                 || scene.facts(landmark).belongs_to_opening()
                 || (name == "in" && scene.is_seat_or_bed(landmark))
                 || (name == "next_to" && longest(landmark) < LEAST_LANDMARK * longest(target))
+                || (name == "next_to" && carrier(scene, landmark) != own_carrier)
             {
                 continue;
             }
@@ -112,6 +116,15 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
         }
     }
     found
+}
+
+/// What a thing stands on or in; `None` on floors, rugs and walls.
+fn carrier(scene: &SemanticScene<'_>, object: ObjectId) -> Option<ObjectId> {
+    ["on", "in"].iter().find_map(|name| {
+        let predicate = predicates::find(name).ok()?;
+        let under = predicates::related_objects(scene, predicate, object).into_iter();
+        under.filter(|other| !scene.facts(*other).is_rug()).min()
+    })
 }
 
 /// Returns whether the main colours of two things are too near to tell them apart.
