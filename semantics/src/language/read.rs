@@ -190,8 +190,12 @@ impl Language {
         }
         let is_word = |word: &&String| word.chars().any(char::is_alphanumeric);
         let count = words.iter().filter(is_word).count();
-        if count > MAX_WORDS || words.len() > 2 * MAX_WORDS {
-            return Err(too_long("words", count.max(MAX_WORDS + 1), MAX_WORDS));
+        if count > MAX_WORDS {
+            return Err(too_long("words", count, MAX_WORDS));
+        }
+        if words.len() > 2 * MAX_WORDS {
+            let unit = "words and punctuation marks";
+            return Err(too_long(unit, words.len(), 2 * MAX_WORDS));
         }
         let has_genitive = words.iter().any(|word| word.ends_with("'s"));
         let read = self.read_words(&words, has_genitive);

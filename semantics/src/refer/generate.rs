@@ -128,7 +128,7 @@ fn carrier(scene: &SemanticScene<'_>, object: ObjectId) -> Option<ObjectId> {
 }
 
 /// Returns whether the main colours of two things are too near to tell them apart.
-fn is_of_color_of(scene: &SemanticScene<'_>, one: ObjectId, other: ObjectId) -> bool {
+fn have_near_colors(scene: &SemanticScene<'_>, one: ObjectId, other: ObjectId) -> bool {
     let main = |id| {
         let patch = scene.facts(id).patches.first()?;
         Some(Oklab::from_linear(patch.linear?))
@@ -189,7 +189,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
             found.extend(
                 others
                     .iter()
-                    .filter(|other| is_of_color_of(scene, **other, target)),
+                    .filter(|other| have_near_colors(scene, **other, target)),
             );
             found.sort_unstable();
             found.dedup();
