@@ -321,8 +321,17 @@ impl ObjectFacts {
                     .is_some_and(|rest| rest.ends_with(' '))
         };
         let kind = self.kind.into_iter().flat_map(|kind| &kind.synonyms);
+        // Of an alarm clock, "wall clock" is another kind of its category.
+        let is_of_another_kind = |synonym: &str| {
+            self.kind.is_some()
+                && self.category.is_some_and(|row| {
+                    let rest = synonym.strip_suffix(row.singular);
+                    rest.is_some_and(|rest| rest.ends_with(' '))
+                })
+        };
         let row = self.category.into_iter();
         let row = row.flat_map(|row| &row.synonyms);
+        let row = row.filter(|synonym| !is_of_another_kind(synonym));
         matches(&self.noun) || kind.chain(row).any(|name| matches(name))
     }
 }

@@ -38,9 +38,9 @@ fn structure_noun(kind: StructureKind) -> Option<&'static str> {
 
 impl Checker<'_> {
     pub(super) fn extension(&self, description: &Description) -> Rc<Extension> {
-        // Who looks at things says "the lamp" of the one in sight; all other quantifiers have the same extension.
+        // Who looks at things says "the lamp" and "the lamps" of those in sight; all other quantifiers have the same extension.
         let key = match (self.listener.viewer, description.quantifier) {
-            (Some(_), Quantifier::The) => description.clone(),
+            (Some(_), Quantifier::The | Quantifier::ThePlural) => description.clone(),
             _ => description.clone().with_quantifier(Quantifier::Some),
         };
         if let Some(known) = self.extensions.borrow().get(&key) {
@@ -65,7 +65,13 @@ impl Checker<'_> {
         if matches!(description.noun, Noun::SameNoun | Noun::SameThings) {
             found.fault = Some(UndecidedReason::NoAntecedent);
         }
-        if description.quantifier == Quantifier::The {
+        if description.noun.is_of_parts_alone() {
+            found.fault = Some(UndecidedReason::PartOfThing);
+        }
+        if matches!(
+            description.quantifier,
+            Quantifier::The | Quantifier::ThePlural
+        ) {
             self.keep_visible(&mut found);
         }
         if let Some(selection) = &description.selection {

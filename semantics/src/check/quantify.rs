@@ -77,13 +77,20 @@ impl Checker<'_> {
                 }
                 judged
             })),
-            Quantifier::Every => WitnessedTruth::all(fitting.map(|(term, undecided)| {
-                let mut judged = with(term);
-                if let Some(reason) = undecided {
-                    judged.truth = judged.truth.or(Truth::Undecided(reason));
-                }
-                judged
-            })),
+            Quantifier::ThePlural
+                if extension.fits.is_empty() && extension.undecided.is_empty() =>
+            {
+                WitnessedTruth::without_witnesses(Truth::False)
+            }
+            Quantifier::Every | Quantifier::ThePlural => {
+                WitnessedTruth::all(fitting.map(|(term, undecided)| {
+                    let mut judged = with(term);
+                    if let Some(reason) = undecided {
+                        judged.truth = judged.truth.or(Truth::Undecided(reason));
+                    }
+                    judged
+                }))
+            }
             Quantifier::All(number) => {
                 let sure = extension.fits.len();
                 let possible = sure + extension.undecided.len();

@@ -10,6 +10,7 @@ mod vocabulary;
 pub use naming::speakers_disagree;
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;
+pub(crate) use paint::lightness;
 pub use paint::{ColorShare, MENTION_SHARE, color_words};
 pub use pattern::SurfacePattern;
 pub use vocabulary::ColorVocabulary;

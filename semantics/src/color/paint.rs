@@ -1,5 +1,6 @@
 //! The colours of a thing.
 
+use super::cielab::cielab_from_linear;
 use super::naming::speakers_disagree;
 use super::pattern::{SurfacePattern, pattern};
 use super::{ColorVocabulary, Oklab};
@@ -31,6 +32,17 @@ pub struct ColorShare {
     pub linear: Option<[f32; 3]>,
     /// Its fraction of the surface, weighted by opacity; the patches of a thing sum to 1.
     pub share: f32,
+}
+
+/// Returns the mean CIELAB lightness of patches by their shares; `None` where none has a colour.
+pub(crate) fn lightness(patches: &[ColorShare]) -> Option<f32> {
+    let colored = patches
+        .iter()
+        .filter_map(|patch| Some((cielab_from_linear(patch.linear?).x, patch.share)));
+    let (sum, share) = colored.fold((0.0, 0.0), |(sum, share), (own, part)| {
+        (sum + own * part, share + part)
+    });
+    (share > 0.0).then(|| sum / share)
 }
 
 /// A colour in linear light and in `OKLab`.

@@ -1,6 +1,6 @@
 //! The description of a view.
 
-use super::item::{grouped, items};
+use super::item::{appearance, grouped, items};
 use super::options::{TextLength, TextOptions, TextStyle};
 use super::room::surfaces;
 use super::text::{GroundedText, TextWriter, claim};
@@ -18,6 +18,8 @@ use std::collections::BTreeMap;
 const LEAST_SHARE: f32 = 100.0 / 65536.0;
 /// Share of a thing that must be in sight: less is a sliver that people do not recognize.
 const LEAST_UNHIDDEN: f32 = 0.25;
+/// Shares as above from which a thing is counted with others that look like it: who is told of one lamp counts the second, too.
+const LEAST_COUNTED: [f32; 2] = [LEAST_SHARE / 3.0, 0.1];
 /// Share of the picture from which floor or walls are told.
 const LEAST_SURFACE: f32 = 0.03;
 /// Share of the picture from which a thing is told with its place among others.
@@ -215,6 +217,29 @@ impl ViewTeller<'_, '_> {
         found
     }
 
+    /// `objects` with the things in the same place that a reader would count with one of them, since they look like it: those that
+    /// are told with what they stand on, and those that are too small to be told on their own.
+    fn with_look_alikes(
+        &self,
+        objects: &[ObjectId],
+        in_place: impl Fn(ObjectId) -> bool,
+    ) -> Vec<ObjectId> {
+        let [least_share, least_unhidden] = LEAST_COUNTED;
+        let look = |object: ObjectId| appearance(self.scene(), object, self.style);
+        let told: Vec<Description> = objects.iter().map(|object| look(*object)).collect();
+        let seen = self.survey.objects.iter();
+        let counted = seen.filter(|(object, own)| {
+            own.share >= least_share
+                && own.unhidden >= least_unhidden
+                && !objects.contains(object)
+                && self.holds("visible", **object)
+                && in_place(**object)
+                && told.contains(&look(**object))
+        });
+        let counted = counted.map(|(object, _)| *object);
+        objects.iter().copied().chain(counted).collect()
+    }
+
     /// Returns whether a thing is in or on another.
     fn is_carried_by(&self, object: ObjectId, carrier: ObjectId, name: &str) -> bool {
         predicates::find(name).is_ok_and(|predicate| {
@@ -334,9 +359,13 @@ impl ViewTeller<'_, '_> {
         let seen = Modifier::new("visible", []);
         let mut kinds = limits.kinds;
         for (side, objects) in &contents.sides {
-            let mut items = self.items(objects, |other| {
-                side.is_none_or(|side| self.holds(side, other))
-            });
+            let mut items = match *side {
+                Some(side) => {
+                    let there = |other| self.holds(side, other);
+                    self.items(&self.with_look_alikes(objects, there), there)
+                }
+                None => self.items(objects, |_| true),
+            };
             items.truncate(kinds);
             kinds -= items.len();
             let side = side.map(|side| Modifier::new(side, []));
@@ -358,7 +387,8 @@ impl ViewTeller<'_, '_> {
         }
         self.say_places(&contents, limits);
         for ((carrier, name), objects) in &contents.carried {
-            let items = self.items(objects, |other| self.is_carried_by(other, *carrier, name));
+            let there = |other| self.is_carried_by(other, *carrier, name);
+            let items = self.items(&self.with_look_alikes(objects, there), there);
             let Some(carrier) = self.name(*carrier) else {
                 continue;
             };
@@ -366,7 +396,8 @@ impl ViewTeller<'_, '_> {
             self.writer.there_are(&items, &place);
         }
         for (room, objects) in &contents.elsewhere {
-            let items = self.items(objects, |other| self.scene().room_of(other) == Some(*room));
+            let there = |other| self.scene().room_of(other) == Some(*room);
+            let items = self.items(&self.with_look_alikes(objects, there), there);
             let place = [
                 Modifier::new("in_room", [self.other_room(*room)]),
                 seen.clone(),

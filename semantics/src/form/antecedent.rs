@@ -123,6 +123,19 @@ impl Form {
     }
 }
 
+/// Returns whether a modifier tells on which side a thing is: of two things the other one is elsewhere.
+fn is_side(added: &Modifier) -> bool {
+    const SIDES: [&str; 6] = [
+        "left_of",
+        "right_of",
+        "on_left",
+        "on_right",
+        "in_front_of",
+        "behind",
+    ];
+    SIDES.contains(&added.predicate.as_str())
+}
+
 /// Largest number of meanings of a sentence that are kept.
 const MAX_MEANINGS: usize = 8;
 /// Largest number of choices of antecedents that are tried.
@@ -231,7 +244,15 @@ impl Resolver {
                 }
             }
             Form::Question(_) | Form::NounPhrase(_) => {
+                let first = self.mentions.len();
                 self.resolve_unit(None, |visit| visit_form(form, visit));
+                // "How many vases are there in the bookcase, and how many are on top of it?" "It" is none of the vases.
+                if let Form::Question(Question::HowMany(_)) = form
+                    && let Some(counted) = self.mentions.get_mut(first)
+                    && let Phrase::Described(own) = &mut counted.phrase
+                {
+                    own.quantifier = Quantifier::AtLeast(2);
+                }
             }
         }
     }
@@ -411,7 +432,9 @@ impl Resolver {
                     let selection = own.selection.take();
                     // "Carry both plates to the kitchen and put them in the sink": both.
                     let quantifier = match (own.quantifier, named.quantifier) {
-                        (Quantifier::Every, all @ Quantifier::All(_)) => all,
+                        (Quantifier::Every, all @ (Quantifier::ThePlural | Quantifier::All(_))) => {
+                            all
+                        }
                         (own, _) => own,
                     };
                     **own = named.clone().with_quantifier(quantifier);
@@ -451,7 +474,9 @@ impl Resolver {
             if let Some((named, mention)) = named.next() {
                 if named.quantifier != Quantifier::The {
                     // "One of the mats in the hall is orange, and the other is gray": the other mat in the hall.
-                    shared.clone_from(&named.modifiers);
+                    let shared_place = named.modifiers.iter();
+                    let shared_place = shared_place.filter(|added| !is_side(added));
+                    shared = shared_place.cloned().collect();
                 }
                 let named = mention.with_said.as_ref().unwrap_or(named);
                 *other = named.clone().with_quantifier(Quantifier::The).into();

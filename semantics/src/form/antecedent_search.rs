@@ -79,7 +79,13 @@ impl Resolver {
         let same = mentions()
             .filter(|mention| mention.role == role)
             .find_map(noun);
-        same.or_else(|| mentions().find_map(noun))
+        // "Both armchairs are yellow, but the nearest one has a pillow on it": the nearest armchair.
+        let earlier = || {
+            mentions()
+                .filter(|mention| mention.unit < self.unit)
+                .find_map(noun)
+        };
+        same.or_else(earlier).or_else(|| mentions().find_map(noun))
     }
 
     /// The noun of what the same clause compares.

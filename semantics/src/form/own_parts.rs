@@ -6,6 +6,24 @@ use super::{Form, Modifier, Noun, Phrase};
 /// Nouns of things that are also what parts of other things are called.
 const PART_NOUNS: [&str; 2] = ["door", "shelf"];
 
+/// Nouns of parts of things alone.
+const NOUNS_OF_PARTS_ALONE: [&str; 7] = [
+    "armrest",
+    "drawer",
+    "frame",
+    "handle",
+    "headboard",
+    "lampshade",
+    "lid",
+];
+
+impl Noun {
+    /// Returns whether it is that of parts alone, which a scene does not tell apart.
+    pub(crate) fn is_of_parts_alone(&self) -> bool {
+        matches!(self, Self::Object(noun) if NOUNS_OF_PARTS_ALONE.contains(&noun.as_str()))
+    }
+}
+
 fn is_part(phrase: &Phrase) -> bool {
     matches!(
         phrase,

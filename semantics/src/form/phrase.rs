@@ -13,6 +13,8 @@ pub enum Quantifier {
     The,
     /// All of them: "every chair"; true where none fits.
     Every,
+    /// All that are meant: "the chairs", those that the listener sees where it sees some. False where none fits.
+    ThePlural,
     /// All of exactly this number: "both chairs", "all three chairs"; false where another number fits.
     All(u32),
     /// None: "no chair".

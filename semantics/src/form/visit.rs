@@ -1,6 +1,6 @@
 //! Visits of the phrases of a form, in the order of the text.
 
-use super::{Clause, Description, Form, Modifier, Phrase, Question, RequestStep};
+use super::{Clause, Description, Form, Modifier, Noun, Phrase, Question, RequestStep};
 
 /// The role of a phrase.
 #[derive(Clone, Copy, PartialEq, Eq)]
@@ -55,6 +55,28 @@ impl Form {
             }
         });
         (of_landmarks, all)
+    }
+
+    /// Returns the number of places (on the left, at the end of the room) that it says of a thing after a landmark of the same thing,
+    /// though they could be the landmark's.
+    pub(crate) fn stray_place_count(&self) -> usize {
+        const PLACES: [&str; 3] = ["on_left", "on_right", "at_end_of"];
+        let is_landmark = |phrase: &Phrase| matches!(phrase, Phrase::Described(own) if matches!(own.noun, Noun::Object(_)));
+        let is_stray = |pair: &[Modifier]| {
+            PLACES.contains(&pair[1].predicate.as_str())
+                && pair[0].arguments.last().is_some_and(is_landmark)
+        };
+        let mut number = 0;
+        visit_form(&mut self.clone(), &mut |phrase, _| {
+            if let Phrase::Described(own) = phrase {
+                number += own
+                    .modifiers
+                    .windows(2)
+                    .filter(|pair| is_stray(pair))
+                    .count();
+            }
+        });
+        number
     }
 
     /// Returns the number of its descriptions with a comparison: "the cabinet larger than the table".

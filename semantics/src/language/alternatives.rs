@@ -80,6 +80,13 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
             closer(&phrase(of)?, named)
         }
+        ("which_is_closest", [order, of, one, other]) => {
+            let mut clauses = closer(&phrase(of)?, [phrase(one)?, phrase(other)?]);
+            if entry_id(order)? == "farthest_from" {
+                clauses.reverse();
+            }
+            clauses
+        }
         ("which_kind_is_farther", [kind, of, one, other]) => {
             let named = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
             let mut clauses = closer(&phrase(of)?, named);
@@ -98,6 +105,15 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Vec<Clause
             let [one, other] = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
             let mut clauses = comparison_both_ways(word, one, other)?;
             if function.ends_with("_less") {
+                clauses.reverse();
+            }
+            clauses
+        }
+        ("which_kind_selected", [kind, order, one, other]) => {
+            let [one, other] = with_noun_of(&nominal(kind)?, [phrase(one)?, phrase(other)?]);
+            let (relation, is_less) = comparison_of(&entry_id(order)?)?;
+            let mut clauses = both_ways(relation, one, other);
+            if is_less {
                 clauses.reverse();
             }
             clauses
@@ -155,11 +171,25 @@ fn subjects(said: &Tree, subjects: [Phrase; 2]) -> Option<Vec<Clause>> {
 }
 
 fn comparison_both_ways(word: &Tree, one: Phrase, other: Phrase) -> Option<Vec<Clause>> {
-    let name = entry_id(word)?;
-    Some(vec![
-        atomic_clause(&name, vec![one.clone(), other.clone()]),
-        atomic_clause(&name, vec![other, one]),
-    ])
+    Some(both_ways(&entry_id(word)?, one, other))
+}
+
+fn both_ways(relation: &str, one: Phrase, other: Phrase) -> Vec<Clause> {
+    vec![
+        atomic_clause(relation, vec![one.clone(), other.clone()]),
+        atomic_clause(relation, vec![other, one]),
+    ]
+}
+
+/// The comparison of which an order names the extreme, and whether that is the one that has less of it.
+fn comparison_of(order: &str) -> Option<(&'static str, bool)> {
+    Some(match order {
+        "largest" => ("larger_than", false),
+        "smallest" => ("larger_than", true),
+        "tallest" => ("taller_than", false),
+        "widest" => ("wider_than", false),
+        _ => return None,
+    })
 }
 
 fn qualities(

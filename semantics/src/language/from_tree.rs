@@ -2,8 +2,8 @@
 
 use super::phrases::{modifier, nominal, phrase, relation_predicate, size};
 use super::{
-    distances, existence, numbers, other_clauses, places, questions, requests, rooms, sets,
-    verb_phrases,
+    distances, existence, numbers, other_clauses, places, questions, requests, rooms, sentences,
+    sets, verb_phrases,
 };
 use crate::form::{
     Clause, Description, Form, Modifier, Noun, OrdinalSelection, Phrase, Quality, Quantifier,
@@ -48,21 +48,14 @@ pub(super) fn form(tree: &Tree) -> Option<Form> {
         ("ask", [inner]) => Form::Question(questions::question(inner)?),
         ("ask_that" | "ask_tag", [inner]) => Form::Question(Question::Whether(clause(inner)?)),
         ("ask_indirect", [inner]) => Form::Question(questions::indirect_question(inner)?),
-        ("request_ask", [first, inner]) => Form::Several(vec![
-            Form::Request(requests::plan(first)?),
-            Form::Question(questions::indirect_question(inner)?),
-        ]),
-        ("several_questions", [first, second]) => Form::Several(vec![
-            Form::Question(questions::question(first)?),
-            Form::Question(questions::question(second)?),
-        ]),
         ("phrase", [inner]) => Form::NounPhrase(phrase(inner)?),
         ("phrase_room", [inner]) => Form::NounPhrase(room(inner)?),
+        (function, [first, second]) => Form::Several(sentences::forms(function, first, second)?),
         _ => return None,
     })
 }
 
-fn clause(tree: &Tree) -> Option<Clause> {
+pub(super) fn clause(tree: &Tree) -> Option<Clause> {
     Some(match parts(tree)? {
         ("one_clause", [inner]) => possibly_negated_clause(inner)?,
         ("now" | "no_longer", [inner]) => Clause::Now(Box::new(possibly_negated_clause(inner)?)),
@@ -167,6 +160,17 @@ pub(super) fn affirmative_clause(function: &str, arguments: &[Tree]) -> Option<C
             numbers::comparative_by_place([more, there], [than, elsewhere])?
         }
         ("is" | "whether_is", [subject, quality]) => is(phrase(subject)?, quality)?,
+        ("is_tiled", [subject, color]) => {
+            let subject = phrase(subject)?;
+            let is = |quality| Clause::Is {
+                subject: subject.clone(),
+                quality,
+            };
+            Clause::All(vec![
+                is(Quality::Color(entry_id(color)?)),
+                is(Quality::Material("tiled".to_owned())),
+            ])
+        }
         ("says" | "whether_says", [subject, said]) => verb_phrases::clause(phrase(subject)?, said)?,
         ("says_list" | "whether_says_list", [items, said]) => {
             verb_phrases::clause(subjects(items)?, said)?
@@ -431,7 +435,7 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
         }
         ("place_same_room", [other]) => {
             let room = Description::new(Quantifier::Some, Noun::Room(Noun::ANY_ROOM.to_owned()));
-            let with = Modifier::new("room_contains", [phrase(other)?]);
+            let with = Modifier::new("room_contains", [any_of_several(phrase(other)?)]);
             of("in_room", room.with_modifier(with).into())
         }
         ("place_same_thing", [relation, noun, other]) => {
@@ -453,6 +457,16 @@ pub(super) fn place_of(tree: &Tree) -> Option<(String, Phrase)> {
         ("on_storey", [place]) => of("on_storey", Phrase::Storey(number(place)?)),
         _ => return None,
     })
+}
+
+/// "In the same room as the curtains": as some of them.
+fn any_of_several(phrase: Phrase) -> Phrase {
+    match phrase {
+        Phrase::Described(own) if own.quantifier == Quantifier::ThePlural => {
+            own.with_quantifier(Quantifier::Some).into()
+        }
+        other => other,
+    }
 }
 
 /// A room's noun with the colour of its walls; the caller sets the quantifier.

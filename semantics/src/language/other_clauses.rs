@@ -3,7 +3,7 @@
 use super::from_tree::{atomic_clause, entry_id, modifier_clause, place_of, room};
 use super::phrases::{modifier, nominal, phrase};
 use super::{converse, existence, numbers, places, questions, sets, verb_phrases};
-use crate::form::{Clause, Modifier, Phrase, Quantifier};
+use crate::form::{Clause, Description, Modifier, Phrase, Quantifier};
 use crate::grammar::Tree;
 
 /// "I see a chair but no table."
@@ -62,6 +62,20 @@ pub(super) fn from_tree(function: &str, arguments: &[Tree]) -> Option<Clause> {
             let order = questions::superlative_of(&entry_id(word)?, function.ends_with("_less"))?;
             let one = questions::with_selection(sets::set_description(set)?, order, None);
             modifier_clause(one.into(), modifier(added)?)
+        }
+        // "The one on the left is the bigger one": the largest of those that there are.
+        ("is_most" | "is_least" | "whether_most" | "whether_least", [subject, word]) => {
+            let order = questions::superlative_of(&entry_id(word)?, function.ends_with("least"))?;
+            let subject = phrase(subject)?;
+            let Phrase::Described(own) = &subject else {
+                return None;
+            };
+            let all = Description::new(Quantifier::The, own.noun.clone());
+            let most = questions::with_selection(all, order, None);
+            atomic_clause(Modifier::IDENTICAL, vec![subject, most.into()])
+        }
+        ("whether_reach", [thing]) => {
+            atomic_clause("reachable", vec![phrase(thing)?, Phrase::Listener])
         }
         ("most_are" | "whether_most_are", [set, said]) => numbers::majority(set, said)?,
         ("neither_says", [one, other, said]) => {

@@ -48,7 +48,8 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
     match (function, arguments) {
         ("the" | "i_the", [noun]) => of(Quantifier::The, noun),
         ("some" | "i_some" | "i_the_plural", [noun]) => of(Quantifier::Some, noun),
-        ("every" | "i_every" | "the_plural" | "the_pair_of", [noun]) => of(Quantifier::Every, noun),
+        ("every" | "i_every" | "the_pair_of", [noun]) => of(Quantifier::Every, noun),
+        ("the_plural", [noun]) => of(Quantifier::ThePlural, noun),
         ("both" | "i_both", [noun]) => of(Quantifier::All(2), noun),
         ("every_counted" | "i_every_counted", [count, noun]) => {
             of(Quantifier::All(number(count)?), noun)
@@ -192,7 +193,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
             selected(noun, order, number(place)?, None)
         }
         ("superlative" | "i_superlative", [order, noun]) => selected(noun, order, 1, None),
-        ("i_superlative_of", [order, noun, whole]) => {
+        ("i_superlative_of" | "i_superlative_of_modified", [order, noun, whole]) => {
             let part = nominal(noun)?.with_modifier(Modifier::new("belongs_to", [phrase(whole)?]));
             Some(questions::with_selection(part, &entry_id(order)?, None).into())
         }
@@ -320,7 +321,7 @@ pub(super) fn phrase(tree: &Tree) -> Option<Phrase> {
 pub(super) fn each_of(tree: &Tree) -> Option<Phrase> {
     match (parts(tree)?.0, phrase(tree)?) {
         ("i_the_plural" | "the_plural", Phrase::Described(own)) => {
-            Some(own.with_quantifier(Quantifier::Every).into())
+            Some(own.with_quantifier(Quantifier::ThePlural).into())
         }
         (_, other) => Some(other),
     }
@@ -496,8 +497,12 @@ pub(super) fn nominal(tree: &Tree) -> Option<Description> {
         }
         ("state", [word, inner]) => {
             let mut description = nominal(inner)?;
-            let before = description.state.replace(entry_id(word)?);
-            before.is_none().then_some(description)?
+            // "A long striped curtain": one that is striped.
+            if let Some(before) = description.state.replace(entry_id(word)?) {
+                let also = Modifier::new(&before, []);
+                description.modifiers.insert(0, also);
+            }
+            description
         }
         _ => return None,
     })

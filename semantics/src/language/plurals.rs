@@ -5,12 +5,13 @@
 //! bare plurals and the multiplicity implicature", 2009).
 
 use super::from_tree::{entry_id, number, parts};
+use super::lexicon::RELATION;
 use crate::grammar::Tree;
 
 /// Returns the tree with
 ///
 /// - a bare plural as "some" where a plural or a denial goes before;
-/// - "on the shelves" as on any of them, "with the green chairs" as with several;
+/// - "on the shelves" and "above the books" as on and above any of them, "with the green chairs" as with several;
 /// - "the walls of the kitchen" as every wall of it where something is said of them, "the walls" as those of the room that was named before,
 ///   or of the listener's.
 pub(super) fn resolve_plurals(tree: Tree) -> Tree {
@@ -46,12 +47,12 @@ fn distributed(tree: Tree, under_plural: bool, room: &mut Option<Tree>) -> Tree 
     for (at, argument) in arguments.into_iter().enumerate() {
         let subject_is_plural =
             parts(&argument).is_some_and(|(function, of)| is_plural(function, of));
-        let is_supported = distributed_arguments
+        // "Above the books" is above some of them; what is larger than the books is so than each.
+        let is_landmark = distributed_arguments
             .last()
-            .and_then(entry_id)
-            .is_some_and(|word| word == "on" || word == "in");
+            .is_some_and(is_spatial_relation);
         let argument = match parts(&argument) {
-            Some(("the_plural", _)) if is_supported => renamed(argument, "some"),
+            Some(("the_plural", _)) if is_landmark => renamed(argument, "some"),
             Some(("i_the_plural", _)) if is_possession => renamed(argument, "i_at_least_two"),
             _ => argument,
         };
@@ -83,6 +84,12 @@ fn is_plural(function: &str, arguments: &[Tree]) -> bool {
             .is_some_and(|count| count > 1),
         _ => false,
     }
+}
+
+fn is_spatial_relation(word: &Tree) -> bool {
+    const COMPARISONS: [&str; 3] = ["larger_than", "taller_than", "wider_than"];
+    let is_relation = matches!(word, Tree::Entry { class, .. } if class == RELATION);
+    is_relation && entry_id(word).is_some_and(|word| !COMPARISONS.contains(&word.as_str()))
 }
 
 fn as_every_piece(tree: Tree, room_before: Option<Tree>) -> Tree {

@@ -304,6 +304,14 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
             )),
             Clause::Exists(Phrase::Hole),
         ),
+        ("which_of_order_to", [set, order, reference]) => {
+            let reference = Some(phrase(reference)?);
+            let kind = sets::set_description(set)?;
+            which(
+                Some(with_selection(kind, &entry_id(order)?, reference)),
+                Clause::Exists(Phrase::Hole),
+            )
+        }
         ("which_of_is_more" | "which_of_is_less", [set, word]) => {
             let order = superlative_of(&entry_id(word)?, function == "which_of_is_less")?;
             which(
@@ -313,6 +321,10 @@ fn read_only_question(function: &str, arguments: &[Tree]) -> Option<Question> {
         }
         ("how_many_say", [kind, said]) => {
             count(verb_phrases::with_predications(nominal(kind)?, said)?)
+        }
+        ("how_many_bare", [said]) => {
+            let same = Description::new(Quantifier::Some, Noun::SameNoun);
+            count(verb_phrases::with_predications(same, said)?)
         }
         ("how_many_of_say", [set, said]) => count(verb_phrases::with_predications(
             sets::set_description(set)?,
@@ -356,8 +368,24 @@ fn what(clause: Clause) -> Question {
         return Question::Which { kind: None, clause };
     };
     let any = Noun::Object(Noun::ANY_OBJECT.to_owned());
-    let mut kind = Description::new(Quantifier::Some, any);
     let last = clauses.pop();
+    // "What is on the floor, a bath mat?" asks whether it is one.
+    if let Some(Clause::Holds {
+        predicate,
+        arguments,
+    }) = &last
+        && predicate == Modifier::IDENTICAL
+        && let [Phrase::Hole, Phrase::Described(guess)] = &arguments[..]
+        && let Some(there) = clauses
+            .iter()
+            .map(hole_modifier)
+            .collect::<Option<Vec<_>>>()
+    {
+        let mut guess = Description::clone(guess);
+        guess.modifiers.extend(there);
+        return Question::Whether(Clause::Exists(guess.into()));
+    }
+    let mut kind = Description::new(Quantifier::Some, any);
     for said in &clauses {
         let quality = match said {
             Clause::Is {
@@ -377,6 +405,24 @@ fn what(clause: Clause) -> Question {
     Question::Which {
         kind: Some(Box::new(kind)),
         clause: last.unwrap_or(Clause::Exists(Phrase::Hole)),
+    }
+}
+
+/// What a clause says of the hole, as a modifier.
+fn hole_modifier(clause: &Clause) -> Option<Modifier> {
+    match clause {
+        Clause::Holds {
+            predicate,
+            arguments,
+        } => match &arguments[..] {
+            [Phrase::Hole, others @ ..] => Some(Modifier {
+                negated: false,
+                predicate: predicate.clone(),
+                arguments: others.to_vec(),
+            }),
+            _ => None,
+        },
+        _ => None,
     }
 }
 

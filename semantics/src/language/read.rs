@@ -260,7 +260,10 @@ impl Language {
         });
         let mut ranked: Vec<(usize, Form)> = forms.collect();
         // "Is the plant in the pot in front of the desk?" is about the plant in the pot.
-        ranked.sort_by_cached_key(|(cost, form)| (*cost, form.modifier_counts()));
+        // "The shelf of the bookcase on the left" is that of the left bookcase.
+        ranked.sort_by_cached_key(|(cost, form)| {
+            (*cost, form.stray_place_count(), form.modifier_counts())
+        });
         let mut forms: Vec<Form> = Vec::new();
         for form in ranked
             .iter()

@@ -67,7 +67,15 @@ pub(super) fn plan(tree: &Tree) -> Option<Vec<RequestStep>> {
         ("plan_to_wait", [steps]) => {
             let mut steps = plan(steps)?;
             let there = steps.iter().rev().find_map(wait_after)?;
-            steps.push(there);
+            if steps.last() != Some(&there) {
+                steps.push(there);
+            }
+            steps
+        }
+        // Of the way, not of its end.
+        ("plan_but_around", [steps, around]) => {
+            let mut steps = plan(steps)?;
+            steps.insert(0, act("go_around", around)?);
             steps
         }
         ("on_leaving", [last]) => {
@@ -237,10 +245,20 @@ pub(super) fn refrain(verb: &str, object: &Tree) -> Option<RequestStep> {
 
 pub(super) fn put(object: &Tree, relation: &Tree, to: &Tree) -> Option<RequestStep> {
     Some(RequestStep::Put {
-        object: phrase(object)?,
+        object: put_object(object)?,
         predicate: entry_id(relation)?,
         to: phrase(to)?,
     })
+}
+
+/// What is put somewhere: "the plates" are all that are meant, where a landmark is any of them.
+fn put_object(tree: &Tree) -> Option<Phrase> {
+    match (parts(tree)?.0, phrase(tree)?) {
+        ("i_the_plural", Phrase::Described(own)) => {
+            Some(own.with_quantifier(Quantifier::ThePlural).into())
+        }
+        (_, other) => Some(other),
+    }
 }
 
 fn conditional(
@@ -284,6 +302,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
         }
         ("leave", [object]) => refrain("pick_up", object)?,
         ("do_close_behind", [object]) => act("close", object)?,
+        ("do_open_wide", [object]) => act("open", object)?,
         ("put_near", [object, to]) => RequestStep::Put {
             object: phrase(object)?,
             predicate: "near".to_owned(),
@@ -409,6 +428,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
             object: Phrase::Speaker,
         },
         ("do_on", [object]) => act("switch_on", object)?,
+        ("go_alongside", [object]) => act("go_past", object)?,
         ("do_not_on", [object]) => refrain("switch_on", object)?,
         ("do_not_off", [object]) => refrain("switch_off", object)?,
         ("do_off", [object]) => act("switch_off", object)?,
@@ -425,7 +445,7 @@ pub(super) fn step(tree: &Tree) -> Option<RequestStep> {
         | ("put_by_place", [_, object, place]) => {
             let (predicate, to) = place_of(place)?;
             RequestStep::Put {
-                object: phrase(object)?,
+                object: put_object(object)?,
                 predicate,
                 to,
             }
@@ -546,7 +566,14 @@ impl TreeBuilder<'_> {
                     let relation = self.lexicon_entry(RELATION, predicate)?;
                     return Some(Tree::apply("stand_at", [relation, free(to)?]));
                 }
-                let object = self.phrase(object, PhrasePosition::Landmark)?;
+                let object = match object {
+                    Phrase::Described(own)
+                        if own.quantifier == Quantifier::ThePlural && own.modifiers.is_empty() =>
+                    {
+                        Tree::apply("i_the_plural", [self.noun_with_adjectives(own)?])
+                    }
+                    other => self.phrase(other, PhrasePosition::Landmark)?,
+                };
                 if let ("between", Phrase::List(landmarks)) = (predicate.as_str(), to) {
                     let [one, other] = &landmarks[..] else {
                         return None;

@@ -1,8 +1,36 @@
 //! Sentences of several clauses or forms.
 
+use super::from_tree::clause;
+use super::questions::{indirect_question, question};
+use super::requests::plan;
 use super::to_tree::TreeBuilder;
 use crate::form::{Clause, Form, Question};
 use crate::grammar::Tree;
+
+/// The two forms in the tree of one sentence; `None` for other trees.
+pub(super) fn forms(function: &str, first: &Tree, second: &Tree) -> Option<Vec<Form>> {
+    Some(match function {
+        "request_ask" => vec![
+            Form::Request(plan(first)?),
+            Form::Question(indirect_question(second)?),
+        ],
+        "request_question" => vec![
+            Form::Request(plan(first)?),
+            Form::Question(question(second)?),
+        ],
+        "several_questions" => vec![
+            Form::Question(question(first)?),
+            Form::Question(question(second)?),
+        ],
+        "claim_request" => vec![Form::Claim(clause(first)?), Form::Request(plan(second)?)],
+        "request_claim" => vec![Form::Request(plan(first)?), Form::Claim(clause(second)?)],
+        "claim_question" => vec![
+            Form::Claim(clause(first)?),
+            Form::Question(question(second)?),
+        ],
+        _ => return None,
+    })
+}
 
 impl TreeBuilder<'_> {
     pub(super) fn form_pair(&self, forms: &[Form]) -> Option<Tree> {
@@ -18,6 +46,22 @@ impl TreeBuilder<'_> {
                 let whether = Tree::apply("indirect_whether", [self.simple_clause(clause)?]);
                 Some(Tree::apply("request_ask", [self.plan(steps)?, whether]))
             }
+            [Form::Request(steps), Form::Question(asked)] => Some(Tree::apply(
+                "request_question",
+                [self.plan(steps)?, self.question(asked)?],
+            )),
+            [Form::Claim(said), Form::Request(steps)] => Some(Tree::apply(
+                "claim_request",
+                [self.clause(said)?, self.plan(steps)?],
+            )),
+            [Form::Request(steps), Form::Claim(said)] => Some(Tree::apply(
+                "request_claim",
+                [self.plan(steps)?, self.clause(said)?],
+            )),
+            [Form::Claim(said), Form::Question(asked)] => Some(Tree::apply(
+                "claim_question",
+                [self.clause(said)?, self.question(asked)?],
+            )),
             _ => None,
         }
     }

@@ -4,7 +4,8 @@ use super::from_tree::{entry_id, parts, room};
 use super::phrases::phrase;
 use super::places;
 use super::requests::{act, put, refrain, step};
-use crate::form::{Form, Modifier, Phrase, Quantifier, RequestStep, TurnDirection, topic_of};
+use crate::category::categories;
+use crate::form::{Form, Modifier, Noun, Phrase, Quantifier, RequestStep, TurnDirection, topic_of};
 use crate::grammar::Tree;
 
 /// Steps in one clause: "switch off the lamp and the radio".
@@ -28,6 +29,11 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
                 return None;
             }
             vec![put(object, one, first)?, put(object, other, second)?]
+        }
+        ("put_on_beside", [object, one, place, other, neighbour]) => {
+            let stands_there = can_be_picked_up(&phrase(neighbour)?);
+            (stands_there && !can_be_picked_up(&phrase(place)?)).then_some(())?;
+            vec![put(object, one, place)?, put(object, other, neighbour)?]
         }
         ("put_both_structure", [object, one, structure, other, second])
         | ("put_by_floor", [_, object, one, structure, other, second]) => {
@@ -80,6 +86,9 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
             form.is_free_of_anaphora()
                 .then_some(vec![passed, step(then)?])?
         }
+        ("go_past_to_room", [past, to]) => {
+            vec![act("go_past", past)?, RequestStep::GoTo(room(to)?)]
+        }
         ("go_past_to", [past, to]) => vec![act("go_past", past)?, act("approach", to)?],
         ("go_through_to", [through, to]) => {
             vec![act("go_through", through)?, act("approach", to)?]
@@ -101,6 +110,21 @@ pub(super) fn coordinated_steps(tree: &Tree) -> Option<Vec<RequestStep>> {
         }
         _ => return None,
     })
+}
+
+/// Returns whether a phrase names something small enough to be carried, by the table of categories: it stands on what does not.
+fn can_be_picked_up(phrase: &Phrase) -> bool {
+    /// What people carry in one hand, kg.
+    const LARGEST_MASS_KG: f32 = 3.0;
+    let Phrase::Described(own) = phrase else {
+        return false;
+    };
+    let Noun::Object(noun) = &own.noun else {
+        return false;
+    };
+    let mut rows = categories().rows().iter();
+    let named = rows.find(|row| row.singular == noun || row.synonyms.contains(&noun.as_str()));
+    named.is_some_and(|row| row.movable && row.mass_kg <= LARGEST_MASS_KG)
 }
 
 /// "The cabinet on the right of the window, not the one on the left": of the window, too.
@@ -140,6 +164,10 @@ pub(super) fn wait_after(step: &RequestStep) -> Option<RequestStep> {
             predicate: "in_room".to_owned(),
             to: room.clone(),
         }),
+        RequestStep::Put {
+            object: Phrase::Listener,
+            ..
+        } => Some(step.clone()),
         RequestStep::Do { verb, object } if verb == "approach" => Some(RequestStep::Do {
             verb: "stop_at".to_owned(),
             object: object.clone(),

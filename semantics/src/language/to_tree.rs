@@ -314,7 +314,8 @@ impl TreeBuilder<'_> {
                     Quantifier::Some => "room_a",
                     Quantifier::Every => "room_every",
                     Quantifier::No => "room_no",
-                    Quantifier::All(_)
+                    Quantifier::ThePlural
+                    | Quantifier::All(_)
                     | Quantifier::Exactly(_)
                     | Quantifier::AtLeast(_)
                     | Quantifier::AtMost(_) => return None,
@@ -425,6 +426,7 @@ impl TreeBuilder<'_> {
             Quantifier::Some => Tree::apply("some", [noun]),
             Quantifier::The => Tree::apply("the", [noun]),
             Quantifier::Every => Tree::apply("every", [noun]),
+            Quantifier::ThePlural => Tree::apply("the_plural", [noun]),
             Quantifier::All(2) => Tree::apply("both", [noun]),
             Quantifier::All(number) => Tree::apply("every_counted", [count(number), noun]),
             Quantifier::No => Tree::apply("no", [noun]),

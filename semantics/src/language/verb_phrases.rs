@@ -95,6 +95,11 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
             let selected = questions::with_selection(nominal(noun)?, &entry_id(order)?, None);
             relation("identical", [selected.into()])
         }
+        ("vp_selected_to", [noun, order, reference]) => {
+            let reference = Some(phrase(reference)?);
+            let selected = questions::with_selection(nominal(noun)?, &entry_id(order)?, reference);
+            relation("identical", [selected.into()])
+        }
         ("vp_any_other" | "vp_less_any_other", [word, noun]) => {
             let order = questions::superlative_of(&entry_id(word)?, is_less_than_any_other(tree))?;
             let selected = questions::with_selection(nominal(noun)?, order, None);
@@ -140,6 +145,11 @@ pub(super) fn predications(tree: &Tree) -> Option<PredicationList> {
         ("vps_and_hang", [first, mount]) => {
             let mut all = predications(first)?;
             all.extend(relation("hangs_on", [phrase(mount)?]));
+            all
+        }
+        ("vps_and_same_color", [first, other]) => {
+            let mut all = predications(first)?;
+            all.extend(relation("same_color", [each_of(other)?]));
             all
         }
         ("vps_single" | "vps_several", [inner]) => predications(inner)?,
@@ -303,7 +313,7 @@ pub(super) fn clause(subject: Phrase, tree: &Tree) -> Option<Clause> {
     let is_indefinite = |own: &Description| {
         !matches!(
             own.quantifier,
-            Quantifier::The | Quantifier::Every | Quantifier::All(_)
+            Quantifier::The | Quantifier::Every | Quantifier::ThePlural | Quantifier::All(_)
         )
     };
     match subject {

@@ -18,6 +18,7 @@ mod closed;
 mod closer_to;
 mod container;
 mod contains;
+mod dark;
 mod doors;
 mod empty;
 mod facing;
@@ -306,6 +307,7 @@ pub fn all() -> &'static [&'static dyn Predicate] {
         &striped::Striped,
         &checked::Checkered,
         &patterned::Patterned,
+        &dark::Dark,
     ]
 }
 

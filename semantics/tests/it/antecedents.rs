@@ -219,7 +219,7 @@ fn they_are_what_the_sentence_was_about() {
         ),
         (
             "Open the curtains and then close them.",
-            "Open every curtain, then close every curtain.",
+            "Open the curtains, then close the curtains.",
         ),
         (
             "Put the purple vase on the shelf next to the yellow one.",

@@ -18,6 +18,7 @@ mod heaps;
 mod language;
 mod lengths;
 mod patterns;
+mod plural_and_parts;
 mod predicates;
 mod predicates_page;
 mod properties;
