@@ -1,5 +1,8 @@
 //! Errors of the physics engine.
 
+use dwell_scene::name_suggestions::nearest_names;
+use std::collections::BTreeSet;
+
 /// An error of physics, with its place.
 #[derive(Debug, Clone, PartialEq, thiserror::Error)]
 #[non_exhaustive]
@@ -35,7 +38,7 @@ pub enum PhysicsError {
         count: usize,
     },
     /// A law that acts on something that does not exist.
-    #[error("law {law}: no {kind} {name:?} to act on; there are {known:?}")]
+    #[error("law {law}: no {kind} {name:?} to act on; {}", nearest_of(*of, near))]
     LawTarget {
         /// The law's id.
         law: &'static str,
@@ -43,8 +46,10 @@ pub enum PhysicsError {
         kind: &'static str,
         /// The name given.
         name: String,
-        /// The first names that exist.
-        known: Vec<String>,
+        /// The number of names that exist.
+        of: usize,
+        /// Those of them that are most like it.
+        near: Vec<String>,
     },
     /// A law that its target cannot follow.
     #[error("law {law} cannot act on {what}: {why}")]
@@ -92,17 +97,31 @@ impl PhysicsError {
         name: &str,
         known: impl Iterator<Item = &'a str>,
     ) -> Self {
-        let mut names: Vec<String> = Vec::new();
-        for known in known {
-            if names.len() < 12 && !names.iter().any(|name| name == known) {
-                names.push(known.to_owned());
-            }
-        }
+        let known: BTreeSet<&str> = known.collect();
+        let near = if known.len() <= MOST_LISTED {
+            known.iter().copied().collect()
+        } else {
+            nearest_names(name, known.iter().copied(), NEAREST)
+        };
         Self::LawTarget {
             law,
             kind,
             name: name.to_owned(),
-            known: names,
+            of: known.len(),
+            near: near.into_iter().map(str::to_owned).collect(),
         }
+    }
+}
+
+/// Largest number of names of which an error lists all.
+const MOST_LISTED: usize = 12;
+/// Number of the nearest names that it lists of more.
+const NEAREST: usize = 5;
+
+fn nearest_of(of: usize, near: &[String]) -> String {
+    match of {
+        0 => "there are none".to_owned(),
+        _ if of == near.len() => format!("there are {near:?}"),
+        _ => format!("of the {of} the nearest are {near:?}"),
     }
 }

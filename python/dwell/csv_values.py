@@ -103,10 +103,14 @@ MISSING_NUMBER_HINT = (
 class TimeParser:
     """Times of samples, s: they rise from row to row of an episode."""
 
-    def __init__(self, column: str, seconds_per_unit: float) -> None:
-        """A column, and the seconds in a unit of its numbers."""
+    def __init__(self, column: str, seconds_per_unit: float, *, is_in_units: bool = False) -> None:
+        """A column, the seconds in one of its numbers, and whether the map's ``units`` say so."""
         self.column = column
         self.seconds_per_unit = seconds_per_unit
+        self._key = f"the unit of {column!r} in 'units'" if is_in_units else "seconds_per_unit"
+        self._unit = (
+            f"{seconds_per_unit:g} s each" if is_in_units else f"{self._key} {seconds_per_unit:g}"
+        )
         self._last: dict[str, tuple[float, str]] = {}
 
     def stamp(self, at: str, episode: str, told: float) -> str:
@@ -125,14 +129,13 @@ class TimeParser:
         if told > before > -math.inf and float(stamp) <= float(self._told(before)):
             raise ValueError(
                 f"{at}: column {self.column!r} is {told:g} after {before:g} (row "
-                f"{there.rpartition(' ')[2]}), and both are {stamp} s at seconds_per_unit "
-                f"{self.seconds_per_unit:g}; times rise within an episode by 1e-9 s or more: "
-                "correct seconds_per_unit in the map"
+                f"{there.rpartition(' ')[2]}), and both are {stamp} s at {self._unit}; times "
+                f"rise within an episode by 1e-9 s or more: correct {self._key} in the map"
             )
         if not math.isfinite(float(stamp)):
             raise ValueError(
                 f"{at}: column {self.column!r} is {told:g}, which is no finite number of seconds "
-                f"at seconds_per_unit {self.seconds_per_unit:g}; correct one of them"
+                f"at {self._unit}; correct one of them"
             )
         return stamp
 

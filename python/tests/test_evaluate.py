@@ -205,6 +205,24 @@ def test_what_was_edited_is_found(
     assert any(told in sentence for sentence in differences(other)), differences(other)
 
 
+def test_means_are_compared_with_those_of_what_was_played(result: dict[str, Any]) -> None:
+    """Means by the file's own rows, with the edited one in them, were told as played."""
+    other = json.loads(json.dumps(result))
+    at("episodes", 1, "spl", to=0.25)(other)
+    (told,) = differences(other)
+    assert told.startswith("episodes[1].spl: the file states 0.25, played it is ")
+    # Nobody knows the means where an episode cannot be played.
+    at("episodes", 0, "actions", to="1*20")(other)
+    mean = result["metrics"]["spl"]["mean"]
+    others = [row["spl"] for k, row in enumerate(result["episodes"]) if k != 1]
+    found = (sum(others) + 0.25) / len(result["episodes"])
+    told = next(one for one in differences(other) if one.startswith("metrics.spl.mean: "))
+    states, reckoned = told.split("the file states ")[1].split(
+        ", by the episodes that it states it is "
+    )
+    assert (float(states), float(reckoned)) == (mean, pytest.approx(found))
+
+
 @pytest.mark.parametrize("wrong", [10**400, math.nan, [[]], object(), "\ud800", {"a": {}}])
 def test_what_is_no_result_is_told_by_its_place(wrong: object, result: dict[str, Any]) -> None:
     takes_mappings = {"world", "bootstrap", "metrics", "by_goal_kind", "by_goal_class", "settings"}

@@ -403,6 +403,78 @@ def test_sounds_of_a_folder_and_what_is_none(tmp_path: Path) -> None:
         Pool(str(tmp_path / "nowhere"))
 
 
+def test_a_clip_whose_source_was_in_its_pause_sounds(tmp_path: Path) -> None:
+    """A telephone of which 1.3 s of its pause were drawn was a clip of residues, with labels."""
+    settings = Settings(duration_s=2.0, rate_hz=RATE_HZ, max_sources=1)
+    maker = DatasetMaker(["shoebox:0..1"], settings, count=1)
+    assert [is_new for _, is_new in maker.make(tmp_path)] == [True]
+    details = json.loads(maker.details(tmp_path, 0).read_text())
+    assert details["sources"][0]["class"] == "phone"
+    assert details["recordings"]["foa"]["full_scale_pa"] > 0.01
+
+
+@pytest.mark.parametrize("duration_s", [1.0, 2.0, 5.0])
+def test_every_source_of_a_clip_sounds_in_it(duration_s: float) -> None:
+    settings = dataclasses.replace(SETTINGS, duration_s=duration_s)
+    maker = DatasetMaker(["shoebox:0..2"], settings, count=60)
+    rooms = [OpenHouse(name, settings) for name in maker.houses]
+    classes = set()
+    for clip in maker.clips:
+        found = draw_scene(rooms[maker.house_number(clip)], settings, maker.pool, clip)
+        for source in found.sources:
+            classes.add(maker.pool.classes[source.sound.class_index])
+            samples = (source.sound, RATE_HZ, source.samples, source.start)
+            sound = maker.pool.samples(*samples)
+            place, ear = source.way.points[0], found.listener.points[0]
+            late = int(math.dist(place, ear) / 343.2 * RATE_HZ)
+            heard = sound[: settings.samples - source.onset - late]
+            level_pa = 2e-5 * 10.0 ** (source.sound.level_db / 20.0)
+            assert np.mean(heard**2) > 0.09 * level_pa**2, samples
+    assert {"phone", "doorbell", "alarm"} <= classes
+
+
+def test_a_stretch_stays_where_it_sounds_and_is_drawn_evenly_where_it_does_not() -> None:
+    pool = Pool("signals")
+    phone = next(sound for sound in pool.sounds if sound.name == "phone")
+    drawn = (np.arange(600) + 0.5) / 600
+    found = np.array([pool.stretch(phone, RATE_HZ, 16_000, 16_000, start)[0] for start in drawn])
+    kept = found == drawn
+    assert 0.4 < kept.mean() < 0.6
+    # What was silent is spread over the same starts as evenly.
+    shares = [
+        np.histogram(own, 20, (0.0, 1.0))[0] / len(own) for own in (found[kept], found[~kept])
+    ]
+    assert np.abs(shares[0] - shares[1]).max() < 0.01
+    steady = next(sound for sound in pool.sounds if sound.name == "vacuum_cleaner")
+    assert pool.stretch(steady, RATE_HZ, 16_000, 16_000, 0.3) == (0.3, 16_000)
+
+
+def test_stretches_of_files_sound_and_are_no_longer_than_the_file(tmp_path: Path) -> None:
+    (tmp_path / "dog").mkdir()
+    barks = np.zeros((1, 40_000))
+    barks[0, 30_000:32_000] = np.sin(np.arange(2_000) * 0.3)
+    write_wav(tmp_path / "dog" / "long.wav", barks, 8_000)
+    write_wav(tmp_path / "dog" / "short.wav", barks[:, 30_000:32_000], 8_000)
+    pool = Pool(str(tmp_path))
+    long, short = pool.sounds
+    for drawn in np.linspace(0.0, 0.999, 20):
+        start, count = pool.stretch(long, RATE_HZ, 16_000, 12_000, float(drawn))
+        assert count == 16_000
+        heard = pool.samples(long, RATE_HZ, count, start)[:12_000]
+        assert np.mean(heard**2) > 0.09 * (2e-5 * 10 ** (65 / 20)) ** 2
+    assert pool.stretch(short, RATE_HZ, 16_000, 16_000, 0.4) == (0.4, 4_000)
+    room, settings = OpenHouse("shoebox:1", SMALL), dataclasses.replace(SMALL, max_sources=1)
+    for clip in range(6):
+        found = draw_scene(room, settings, pool, clip)
+        (source,) = found.sources
+        if source.sound == short:
+            assert source.samples == 4_000
+            assert len(labels_of(found, settings)) <= 4
+    (tmp_path / "dog" / "long.wav").write_bytes(b"RIFF nothing")
+    with pytest.raises(dwell.MeasuredDataError, match="it was a sound when the run began"):
+        pool.stretch(long, RATE_HZ, 16_000, 16_000, 0.5)
+
+
 def test_places_in_walls_and_arrays_larger_than_the_room_are_refused(room: OpenHouse) -> None:
     room.check_free("a source", (3.0, 1.2, 3.0))
     for place in ((-0.1, 1.2, 3.0), (3.0, 5.0, 3.0), (3.0, 1.2, 5.99)):

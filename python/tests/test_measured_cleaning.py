@@ -95,6 +95,34 @@ def test_episodes_of_too_few_rows_are_left_out_where_the_map_says_so(
     assert counts["notes"] == [f"1 episode of fewer than {fewest} rows: left out 'stump' (3 rows)"]
 
 
+#: Flights of three coordinates: a row is three samples of the bundle.
+THROWS = {**FLIGHT, "bodies": None, "body": {"name": "ball", "mass_kg": 0.0027, "radius_m": 0.02}}
+
+
+@pytest.mark.parametrize("count", [1, 2, 5])
+def test_rows_of_an_episode_are_counted_and_not_its_coordinates(tmp_path: Path, count: int) -> None:
+    """From two rows on a flight of three coordinates was an episode."""
+
+    def change(rows: Rows) -> None:
+        rows.extend([["stump", *row[1:]] for row in rows[:count]])
+
+    told = refused(tmp_path, THROWS, change)
+    assert f"data.csv, episode stump: {count} rows, at least 6 are needed; or write " in told
+    assert told.endswith('"cleaning": {"short_episodes": "leave_out"} in the map\'s table')
+    assert brought(tmp_path, cleaned(THROWS, short_episodes="leave_out"), change)["episodes"] == 4
+
+
+def test_rows_without_a_number_are_told_where_they_make_an_episode_short(tmp_path: Path) -> None:
+    def change(rows: Rows) -> None:
+        rows.extend([["stump", *row[1:]] for row in rows[:8]])
+        for k in (-1, -3, -5):
+            rows[k][3] = ""
+
+    told = refused(tmp_path, THROWS, change)
+    assert "episode stump: 5 rows, at least 6 are needed" in told
+    assert told.endswith("(3 of 168 rows have no number in column y: left out)")
+
+
 def test_starts_follow_their_samples_into_the_parts(tmp_path: Path) -> None:
     starts = {
         "file": "index.csv",

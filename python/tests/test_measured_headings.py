@@ -63,8 +63,8 @@ def followed(mapping: dict[str, Any], told: str) -> dict[str, Any]:
     units = {**table.get("units", {})}
     if "Leave their unit out" in told:
         units.pop(table["heading_rad"])
-    for found in re.findall(r'"units": (\{".*?\}\})', told):
-        units.update(json.loads(found))
+    for found in re.finditer(r'"units": ', told):
+        units.update(json.JSONDecoder().raw_decode(told, found.end())[0])
     if found := re.search(r'"radians_per_unit": ([0-9.]+)', told):
         table["radians_per_unit"] = float(found[1])
     if 'Exchange "ticks_left" and "ticks_right"' in told:

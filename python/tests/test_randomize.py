@@ -120,6 +120,8 @@ def test_what_is_told_goes_before_what_was_found(shoebox: dwell.House) -> None:
         ({GRAVITY: [2.0, 1.0]}, "low <= high"),
         ({GRAVITY: [float("nan"), 1.0]}, "nan"),
         ({"law/nope/x": [0.0, 1.0]}, "nope"),
+        ({GRAVITY: [981.0, 982.0]}, "allowed is an interval that has something of 0 to 100"),
+        ({DRAG: [-2.0, -1.0]}, "allowed is an interval that has something of 0 to 20"),
         ({**FOUND, "lows": 1}, "no field 'lows'"),
         (7, "randomize is 7"),
     ],

@@ -1,5 +1,7 @@
 //! Errors of worlds.
 
+use dwell_scene::name_suggestions::nearest_names;
+
 /// A fault of a world, its sensors or its tasks.
 #[derive(Debug, thiserror::Error)]
 #[non_exhaustive]
@@ -43,7 +45,7 @@ pub enum WorldError {
         error: serde_json::Error,
     },
     /// A name that nothing registered has.
-    #[error("no {kind} {name:?}; there are {known:?}")]
+    #[error("no {kind} {name:?}; {}", nearest_known(name, known))]
     Unknown {
         /// The kind of name.
         kind: &'static str,
@@ -86,6 +88,21 @@ pub enum WorldError {
 }
 
 /// What there is in place of a name.
+/// Largest number of names that an error lists.
+const MOST_LISTED: usize = 24;
+/// Number of the nearest names that it lists of more.
+const NEAREST: usize = 5;
+
+/// The names that exist; of more than [`MOST_LISTED`] those nearest to the one given.
+fn nearest_known(name: &str, known: &[String]) -> String {
+    if known.len() <= MOST_LISTED {
+        return format!("there are {known:?}");
+    }
+    let near = nearest_names(name, known.iter().map(String::as_str), NEAREST);
+    let near: Vec<String> = near.into_iter().map(str::to_owned).collect();
+    nearest_of(known.len(), &near)
+}
+
 fn nearest_of(of: usize, near: &[String]) -> String {
     match of {
         0 => "there are none".to_owned(),

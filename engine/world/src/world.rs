@@ -59,8 +59,18 @@ impl World {
         }
         engines.check_sounds()?;
         let start = engines.initial_world(config)?;
-        for text in config.randomize.keys() {
-            crate::laws::parameter(&start.state, engines.house(), &text.parse()?)?;
+        for (text, [low, high]) in &config.randomize {
+            let known = crate::laws::parameter(&start.state, engines.house(), &text.parse()?)?;
+            if *low > known.high || *high < known.low {
+                return Err(WorldError::Config {
+                    field: "randomize",
+                    found: format!("{low} to {high} for {text}"),
+                    allowed: format!(
+                        "an interval that has something of {} to {}",
+                        known.low, known.high
+                    ),
+                });
+            }
         }
         let (state, physics) = (start.state.clone(), start.physics.clone());
         let mut rays = RayScene::new(engines.house().clone());

@@ -5,7 +5,7 @@ use crate::contact::{ContactEntity, entry_index};
 use crate::dynamics::Dynamics;
 use crate::joints::{self, DriveProgress, ManualJointDrive, PhysicsJoint, motor_command};
 use crate::outcome::{DelayedOutcome, OutcomeCode, done, fail};
-use dwell_scene::{JointCommand, State};
+use dwell_scene::{JointCommand, JointKind, State};
 
 /// Openness from which a joint counts as open, and up to which as closed.
 pub(crate) const OPEN_THRESHOLD: f32 = 0.95;
@@ -113,10 +113,27 @@ impl WorldJoints {
             };
             done(OutcomeCode::Done, sentence, Some(object))
         } else {
-            let what = blocking_object_name(dynamics, state, joint).map_or_else(
-                || "something is in the way. Step aside or move it.".to_owned(),
-                |what| format!("the {what} is in the way. Move it."),
-            );
+            let effort = drive
+                .agent
+                .and_then(|agent| state.agents.get(agent))
+                .map_or_else(
+                    || state.default_hand_effort(),
+                    |agent| agent.body.hand_effort,
+                );
+            let friction = joint.values.friction;
+            let what = match blocking_object_name(dynamics, state, joint) {
+                Some(what) => format!("the {what} is in the way. Move it."),
+                None if friction >= effort => {
+                    let unit = match joint.kind {
+                        JointKind::Hinge => "N m",
+                        JointKind::Slide => "N",
+                    };
+                    format!(
+                        "its joint holds with {friction} {unit}, and the hand pulls with {effort} {unit}."
+                    )
+                }
+                None => "something is in the way. Step aside or move it.".to_owned(),
+            };
             let sentence = format!("The {name} stopped {share:.0} % open: {what}");
             fail(OutcomeCode::Blocked, sentence, Some(object))
         };

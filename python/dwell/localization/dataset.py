@@ -27,13 +27,11 @@ from dwell.localization.noise import diffuse_noise
 from dwell.localization.pool import Pool
 from dwell.localization.rendering import Recording, Renderer
 from dwell.localization.rooms import OpenHouse, house_list
-from dwell.localization.scenes import Scene, draw_scene
+from dwell.localization.scenes import SPEED_M_S, Scene, draw_scene
 from dwell.localization.settings import Settings
 from dwell.localization.trajectory import seen_from
 from dwell.sounds import is_whole_wav, write_wav
 
-#: Sound travels so far in a second for labels, m.
-_SPEED_M_S = 343.2
 #: What may be added to a clip's name.
 _PARTS = ("direct", "early", "late", "noise")
 #: Octaves whose mean stands for a room (ISO 3382-1:2009, table A.1), Hz.
@@ -51,7 +49,7 @@ def labels_of(scene: Scene, settings: Settings) -> list[Label]:
     for number, source in enumerate(scene.sources):
         seen = seen_from(scene.listener, source.way, middles)
         away = np.linalg.norm(seen, axis=1)
-        begin = source.onset / settings.rate_hz + away / _SPEED_M_S
+        begin = source.onset / settings.rate_hz + away / SPEED_M_S
         end = begin + source.samples / settings.rate_hz
         heard_s = np.minimum(end, middles + 0.5 * FRAME_S) - np.maximum(
             begin, middles - 0.5 * FRAME_S
@@ -202,7 +200,8 @@ class DatasetMaker:
             The number of each clip in order, and whether it was made now.
 
         Raises:
-            OSError: The system refuses to write.
+            MeasuredDataError: A sound file is none any more.
+            OSError: The system refuses to write, or to read a sound file.
         """
         out = Path(file_path("out", out))
         opened: OpenHouse | None = None

@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import ConfigError, DwellError, _native
+from dwell import ConfigError, DwellError, MeasuredDataError, _native
 from dwell.arguments import quoted
 from dwell.sounds import read_wav
 
@@ -37,6 +37,10 @@ _REFERENCE_PA = 2e-5
 _MAX_FILES = 100_000
 #: Of a file: its samples a second, and how long it is, s. More would take memory without bound.
 _RATES_HZ, _MAX_S = (1_000, 384_000), 300.0
+#: Sounds begin and end so softly, s.
+_EDGE_S = 0.005
+#: Mean power of a stretch in which a sound is there, over that of the whole sound.
+_SOUNDING = 0.1
 
 
 @dataclass(frozen=True)
@@ -114,6 +118,55 @@ class Pool:
             raise ConfigError(f"{path}: its samples are none, silent or no numbers")
         return mono, rate_hz
 
+    def _read_again(self, name: str) -> tuple[NDArray[np.float64], int]:
+        try:
+            return self._read(name)
+        except DwellError as error:
+            raise MeasuredDataError(f"{error}; it was a sound when the run began") from error
+
+    def stretch(
+        self, sound: Sound, rate_hz: int, count: int, heard: int, start: float
+    ) -> tuple[float, int]:
+        """Where a sound begins so that it sounds, and how many samples it then has.
+
+        Args:
+            sound: One of :attr:`sounds`.
+            rate_hz: Samples a second.
+            count: How many samples at most.
+            heard: How many of them are heard, from the first on.
+            start: Where to begin, as of :meth:`samples`. It stays where the sound sounds from
+                there on; the places where it does not are spread evenly over those where it does.
+
+        Raises:
+            MeasuredDataError: A file is no sound any more.
+            OSError: The system refuses to read a file.
+        """
+        edge = round(_EDGE_S * rate_hz)
+        first, last = edge, min(count - edge, heard)
+        if self._folder is None:
+            whole = _loop(sound.name, rate_hz)
+            starts = len(whole)
+            if not 0 < last - first < starts:
+                return start, count
+            around = np.resize(whole, starts + last)
+        else:
+            around, own_hz = self._read_again(sound.name)
+            count = min(count, _resampled_size(len(around), own_hz, rate_hz))
+            first, last, own_count = (round(n * own_hz / rate_hz) for n in (first, last, count))
+            starts = len(around) - own_count
+            if starts <= 0 or last <= first:
+                return start, count
+            whole = around
+        energy = np.concatenate(([0.0], np.cumsum(around**2)))
+        power = (energy[last : last + starts] - energy[first : first + starts]) / (last - first)
+        is_there = power >= min(_SOUNDING * float(np.mean(whole**2)), float(power.max()))
+        at = min(int(start * starts), starts - 1)
+        if not is_there[at]:
+            there, silent = np.flatnonzero(is_there), np.flatnonzero(~is_there)
+            place = int(np.searchsorted(silent, at)) * len(there) // len(silent)
+            start = (float(there[place]) + 0.5) / starts
+        return start, count
+
     def samples(self, sound: Sound, rate_hz: int, count: int, start: float) -> NDArray[np.float64]:
         """Pressure at 1 m, Pa: so many samples of a signal from anywhere in its loop, or of a file.
 
@@ -122,6 +175,10 @@ class Pool:
             rate_hz: Samples a second.
             count: How many samples at most; a file may be shorter.
             start: Where to begin, 0 to 1 of the loop, or of what a file is too long.
+
+        Raises:
+            MeasuredDataError: A file is no sound any more.
+            OSError: The system refuses to read a file.
         """
         if self._folder is None:
             whole = _loop(sound.name, rate_hz)
@@ -129,10 +186,7 @@ class Pool:
             first = int(start * len(whole))
             cut = np.take(whole, np.arange(first, first + count), mode="wrap")
         else:
-            try:
-                mono, own_hz = self._read(sound.name)
-            except DwellError as error:
-                raise ConfigError(f"{error}; it was a sound when the run began") from error
+            mono, own_hz = self._read_again(sound.name)
             whole = resampled(mono, own_hz, rate_hz)
             level = np.sqrt(np.mean(whole**2))
             first = int(start * max(len(whole) - count, 0))
@@ -150,7 +204,7 @@ def _loop(signal: str, rate_hz: int) -> NDArray[np.float64]:
 
 def _faded(sound: NDArray[np.float64], rate_hz: int) -> NDArray[np.float64]:
     """Begins and ends within 5 ms, without a click."""
-    edge = min(round(0.005 * rate_hz), len(sound) // 2)
+    edge = min(round(_EDGE_S * rate_hz), len(sound) // 2)
     if edge:
         ramp = 0.5 - 0.5 * np.cos(np.pi * (np.arange(edge) + 0.5) / edge)
         sound[:edge] *= ramp
@@ -172,4 +226,9 @@ def resampled(sound: NDArray[np.float64], from_hz: int, to_hz: int) -> NDArray[n
     shared = min(len(kept), len(spectrum))
     kept[:shared] = spectrum[:shared]
     found: NDArray[np.float64] = np.fft.irfft(kept, count) * (count / len(padded))
-    return found[: max(1, round(len(sound) * to_hz / from_hz))]
+    return found[: _resampled_size(len(sound), from_hz, to_hz)]
+
+
+def _resampled_size(count: int, from_hz: int, to_hz: int) -> int:
+    """How many samples a sound has at another rate."""
+    return count if from_hz == to_hz else max(1, round(count * to_hz / from_hz))

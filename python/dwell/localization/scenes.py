@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from typing import Any
 
 import numpy as np
@@ -17,6 +17,8 @@ from dwell.localization.settings import Settings
 from dwell.localization.trajectory import Trajectory, seen_from
 from dwell.navigation import Navigation
 
+#: Sound travels so far in a second for labels, m.
+SPEED_M_S = 343.2
 #: Heights of arrays and sources over the floor, m.
 _LISTENER_M, _SOURCE_M = (1.0, 1.7), (0.4, 1.8)
 #: Speeds of sources and of arrays, m/s, and how fast arrays turn at most, degrees a second.
@@ -98,14 +100,18 @@ def draw_scene(opened: OpenHouse, settings: Settings, pool: Pool, index: int) ->
 
     Raises:
         ConfigError: No source can be where it shall be.
+        MeasuredDataError: A sound file is none any more.
+        OSError: The system refuses to read a sound file.
     """
     why: ConfigError | None = None
     for attempt in range(_ATTEMPTS):
         try:
-            return _scene(opened, settings, pool, index, attempt)
+            scene = _scene(opened, settings, pool, index, attempt)
         except ConfigError as error:
             # Elsewhere in the house there may be a place.
             why = why or error
+        else:
+            return _sounding(scene, settings, pool)
     raise why or ConfigError(f"{opened.name}: no scene")
 
 
@@ -117,6 +123,22 @@ def _scene(opened: OpenHouse, settings: Settings, pool: Pool, index: int, attemp
     sources = [_source(draws, opened, settings, pool, listener) for _ in range(count)]
     snr_db, seed = draws.uniform(*settings.snr_db), draws.below(2**31)
     return Scene(index, opened.name, listener, tuple(sources), snr_db, seed)
+
+
+def _sounding(scene: Scene, settings: Settings, pool: Pool) -> Scene:
+    """The scene with a stretch of each sound in which it sounds while the array hears it."""
+    found = []
+    for source in scene.sources:
+        times_s = np.array((source.onset, source.onset + source.samples)) / settings.rate_hz
+        away_m = float(np.linalg.norm(seen_from(scene.listener, source.way, times_s), axis=1).max())
+        # What is on its way when the clip ends is not heard.
+        late = int(np.ceil(away_m / SPEED_M_S * settings.rate_hz))
+        heard = min(source.samples, max(settings.samples - source.onset - late, 1))
+        start, samples = pool.stretch(
+            source.sound, settings.rate_hz, source.samples, heard, source.start
+        )
+        found.append(replace(source, start=start, samples=samples))
+    return replace(scene, sources=tuple(found))
 
 
 def _point(draws: Draws, grid: Navigation) -> NDArray[np.float64]:

@@ -141,17 +141,23 @@ class Cleaning:
     def without_short(
         self, episodes: list[Episode], fewest: int, name: str, notes: list[str]
     ) -> list[Episode]:
-        """Episodes of enough samples, where the map says that others are left out.
+        """Episodes of enough samples; others are left out where the map says so.
 
         Raises:
-            ValueError: None has so many.
+            ValueError: It does not, or none has so many.
         """
-        if self.short_episodes is None:
-            return episodes
         found = [episode for episode in episodes if len(episode.times) >= fewest]
         short = [episode for episode in episodes if len(episode.times) < fewest]
         if not short:
             return episodes
+        if self.short_episodes is None:
+            # What was left out may be why.
+            left_out = f" ({'; '.join(notes)})" if notes else ""
+            raise ValueError(
+                f"{name}, episode {short[0].name}: {len(short[0].times)} rows, at least {fewest} "
+                'are needed; or write "cleaning": {"short_episodes": "leave_out"} in the map\'s '
+                f"table{left_out}"
+            )
         listed = ", ".join(
             f"{episode.name!r} ({len(episode.times)} rows)" for episode in short[:10]
         )

@@ -61,8 +61,6 @@ class BundleDraft:
         self._clock = self._name = ""
         #: What becomes of gaps, for who can have it otherwise.
         self.gap_hint = ""
-        #: What becomes of episodes of too few rows, likewise.
-        self.short_hint = ""
         #: Makes a fault with hints for the map of one with hints for the bundle.
         self.hints: Callable[[str], str] = str
 
@@ -95,8 +93,6 @@ class BundleDraft:
         """A fault of the bundle as one of the user's files."""
         # Its rows are those of the user's table.
         told = re.sub(r"\b(rows?) of [a-z]+\.csv\b", r"\1", self._told(self.hints(fault), out))
-        if re.search(r": [0-9]+ rows, at least ", told):
-            return told + self.short_hint
         is_gap = "missing before it" in told or "fill the gap in" in told
         return told + self.gap_hint if is_gap else told
 

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 import dataclasses
+import json
 import math
 from collections.abc import Callable, Iterable, Mapping, Sequence
 from typing import Any
@@ -10,7 +11,7 @@ from typing import Any
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell.measured.units import UNITS
+from dwell.measured.units import UNITS, Unit, written
 
 Array = NDArray[np.float64]
 
@@ -90,7 +91,9 @@ class Told:
     Attributes:
         heights: The column of heights.
         height_axis: Which of the places' axes that is.
-        metres: What one of its numbers is, m.
+        unit: What its numbers are.
+        is_named: Whether the map's ``units`` name a column of lengths, so that
+            ``metres_per_unit`` says nothing of it.
         clock: The column of times.
         seconds: What one of its numbers is, s.
         frames: Whether times are numbers of frames.
@@ -100,12 +103,18 @@ class Told:
 
     heights: str
     height_axis: int
-    metres: float
+    unit: Unit
+    is_named: bool
     clock: str
     seconds: float
     frames: bool
     g_m_s2: Any
     environment: Mapping[str, Any]
+
+    @property
+    def metres(self) -> float:
+        """What one of the heights' numbers is, m."""
+        return abs(self.unit.factor)
 
 
 @dataclasses.dataclass(frozen=True)
@@ -288,20 +297,22 @@ def _causes(told: Told, found: float) -> list[_Cause]:
         # Nobody writes places of flights in micrometres.
         if name != "um" and not math.isclose(metres, told.metres):
             later = name in _TOLD_LATER.get(("length", told.metres), ())
+            scale = "" if told.is_named else f', or "metres_per_unit": {metres:g},'
             hint = (
                 f'are lengths in {_NAMES[name]}? Write "{name}" for the "units" of '
-                f'{told.heights!r} and of all lengths like it, or "metres_per_unit": {metres:g}, '
-                "in the map's table"
+                f"{told.heights!r} and of all lengths like it{scale} in the map's table"
             )
             causes.append(_Cause(told.metres / metres, 1.0, hint, later))
     named = [cause.length for cause in causes]
     for times in (10.0, 100.0, 1000.0):
         for factor, word in ((times, "large"), (1.0 / times, "small")):
             if not any(math.isclose(factor, one) for one in named):
-                hint = (
-                    f'are lengths {times:g} times too {word}? Write "metres_per_unit": '
-                    f"{told.metres / factor:g} in the map's table"
-                )
+                what = f'"metres_per_unit": {told.metres / factor:g}'
+                if told.is_named:
+                    unit = written(told.unit.read_as(Unit(1.0 / factor)), "length")
+                    like = f"{told.heights!r} and of all lengths like it"
+                    what = f'{json.dumps(unit)} for the "units" of {like}'
+                hint = f"are lengths {times:g} times too {word}? Write {what} in the map's table"
                 causes.append(_Cause(factor, 1.0, hint))
     if told.frames:
         return causes + _frame_rates(told, found)

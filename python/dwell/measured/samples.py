@@ -13,6 +13,7 @@ from numpy.typing import NDArray
 
 from dwell.csv_values import TimeParser
 from dwell.measured import cleaning
+from dwell.measured.hints import FieldUnit, for_columns
 from dwell.measured.maps import Job, Map, choice, require
 from dwell.measured.places import Place
 from dwell.measured.readers import Row
@@ -136,7 +137,14 @@ class SampleReader:
     """Reads the table of a map's part."""
 
     def __init__(
-        self, job: Job, part: Map, at: str, fields: Sequence[Field], held: Field | None = None
+        self,
+        job: Job,
+        part: Map,
+        at: str,
+        fields: Sequence[Field],
+        held: Field | None = None,
+        *,
+        lends_scales: bool = False,
     ) -> None:
         """Opens it, and refuses columns that are not there.
 
@@ -146,6 +154,7 @@ class SampleReader:
             at: How messages name it.
             fields: What every sample has.
             held: What holds until it changes, and counts in rows without a sample too.
+            lends_scales: Whether another part of the map may be read by the table's scales.
         """
         self.job, self.part, self.at = job, part, at
         self.fields = fields
@@ -162,7 +171,7 @@ class SampleReader:
         if held is not None:
             names.append(held.column)
         self.table.has([*dict.fromkeys([*names, *(own.column for own in fields)])])
-        units = ColumnUnits(part, at)
+        self.units = units = ColumnUnits(part, at)
         #: What one number of the clock is, s.
         self.clock_unit = units.unit(self.clock, "time")
         self._units = [units.unit(own.column, own.dimension) for own in fields]
@@ -173,18 +182,27 @@ class SampleReader:
         #: The user's episodes that were left out for too few samples.
         self.short: set[str] = set()
         units.refuse_unused()
+        if not lends_scales:
+            units.refuse_idle()
+        #: What hints speak of, and the columns by the bundle's names.
+        self.hinted = [self._hinted(Field(self.clock, "time", key="t_s"), self.clock_unit)]
+        self.hinted += [self._hinted(*row) for row in zip(fields, self._units, strict=True)]
+        if held is not None and self._held_unit is not None:
+            self.hinted.append(self._hinted(held, self._held_unit))
+        self.bundle_names: dict[str, str] = {}
+        job.draft.hints = lambda fault: for_columns(fault, self.hinted, self.bundle_names)
         self._from_first = choice(part, "t_zero", ("first",), at) is not None
         self.cleaning = cleaning.Cleaning(part.get("cleaning") or {}, f"{at}: cleaning")
         job.draft.measured(self.table.name, self.clock, "/".join(self.episode))
-        if self.cleaning.short_episodes is None:
-            job.draft.short_hint = (
-                '; or write "cleaning": {"short_episodes": "leave_out"} in the map\'s table'
-            )
         if self.cleaning.gaps is None:
             job.draft.gap_hint = (
                 '; or write "cleaning": {"gaps": "split"} in the map\'s table, which makes an '
                 "episode of each part"
             )
+
+    def _hinted(self, own: Field, unit: Unit) -> FieldUnit:
+        is_named = self.units.names(own.column)
+        return FieldUnit(own.column, own.dimension, unit, is_named, own.key)
 
     def unit_of(self, column: str) -> Unit:
         """The unit of a field's column."""
@@ -232,7 +250,8 @@ class SampleReader:
         for episode in episodes:
             self.job.draft.begins(episode.name, episode.place(0))
         in_si = [replace(episode, values=self._si(episode.values)) for episode in episodes]
-        return Samples(in_si, TimeParser(self.clock, seconds))
+        is_named = self.units.names(self.clock)
+        return Samples(in_si, TimeParser(self.clock, seconds, is_in_units=is_named))
 
     def _hold(self, place: Place, row: Row, name: str, told: float) -> None:
         if self._held is None or self._held_unit is None:

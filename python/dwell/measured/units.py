@@ -63,6 +63,16 @@ class Unit:
         return Unit(other.factor * self.factor, self.zero + other.zero / self.factor)
 
 
+def written(unit: Unit, dimension: str) -> str | dict[str, float]:
+    """A unit as maps write it: by its name, or by numbers."""
+    if unit.zero == 0.0:
+        for name, factor in UNITS[dimension].items():
+            if math.isclose(unit.factor, factor):
+                return name
+    numbers = {"factor": unit.factor, "zero": unit.zero}
+    return {key: float(f"{value:.12g}") for key, value in numbers.items() if value != 0.0}
+
+
 class ColumnUnits:
     """The units of a part of a map, by column."""
 
@@ -73,13 +83,20 @@ class ColumnUnits:
         self._part = part
         self._at = at
         self._told: dict[str, Any] = dict(part.get("units") or {})
-        self._asked: set[str] = set()
+        #: What is read, and what it measures.
+        self._asked: dict[str, str] = {}
+        #: The scales by which another part reads its columns.
+        self._lent: set[str] = set()
         self._inherited = inherited
+
+    def names(self, column: str) -> bool:
+        """Whether ``units`` name a column, so that the older scales say nothing of it."""
+        return column in self._told
 
     def unit(self, column: str, dimension: str) -> Unit:
         """The unit of a column that measures a length, a time, ..."""
-        self._asked.add(column)
-        if column not in self._told:
+        self._asked[column] = dimension
+        if not self.names(column):
             return self._default(dimension)
         told, at = self._told[column], f"{self._at}: units: column {column!r}"
         if told is None:
@@ -103,6 +120,7 @@ class ColumnUnits:
         if key is None:
             return Unit()
         if self._part.get(key) is None and self._inherited is not None:
+            self._inherited._lent.add(key)
             return self._inherited._default(dimension)
         return Unit(scale(self._part, key, self._at))
 
@@ -113,6 +131,18 @@ class ColumnUnits:
                 raise ValueError(
                     f"{self._at}: units: column {column!r} is none that the map reads; those are "
                     f"{sorted(self._asked)}"
+                )
+
+    def refuse_idle(self) -> None:
+        """Refuses older scales that say nothing, since ``units`` name all columns they are for."""
+        for key in dict.fromkeys(SCALES.values()):
+            columns = [name for name, what in self._asked.items() if SCALES.get(what) == key]
+            is_idle = columns and all(map(self.names, columns)) and key not in self._lent
+            if self._part.get(key) is not None and is_idle:
+                raise ValueError(
+                    f"{self._at}: {key} has no effect, since 'units' has a unit of "
+                    f"{' and of '.join(map(repr, columns))}; leave {key} out, and write in 'units' "
+                    "what their numbers are in"
                 )
 
 

@@ -7,7 +7,6 @@ from dataclasses import replace
 from typing import Any
 
 from dwell.arguments import finite_number
-from dwell.measured.hints import FieldUnit, for_columns
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import (
     COLUMN,
@@ -23,7 +22,6 @@ from dwell.measured.places import Place
 from dwell.measured.readers import Row
 from dwell.measured.samples import Field, SampleReader, fields_of, singles
 from dwell.measured.tables import MeasuredTable
-from dwell.measured.units import Unit
 
 TEMPLATE: Map = {
     "kind": "drive",
@@ -92,13 +90,8 @@ def _write(job: Job) -> dict[str, Any]:
     fields = [*fields_of(place, "length", "position"), Field(heading, "angle", key="heading_rad")]
     fields += [Field(part[key], "number", key=key) for key in ("ticks_left", "ticks_right")]
     reader = SampleReader(job, part, here, fields)
-    has_units = {*(part.get("units") or {})}
-    hinted = {}
-    for own, name in zip(fields, ("x", "y", "heading", "left_rad", "right_rad"), strict=True):
-        unit = reader.unit_of(own.column)
-        is_told = own.column in has_units or unit != Unit()
-        hinted[name] = FieldUnit(own.column, unit, is_told)
-    job.draft.hints = lambda fault: for_columns(fault, hinted)
+    names = ("x", "y", "heading", "left_rad", "right_rad")
+    reader.bundle_names = {name: own.column for name, own in zip(names, fields, strict=True)}
 
     def accept(place: Place, name: str) -> bool:
         if listed is not None and name not in listed[1]:

@@ -107,6 +107,7 @@ def _write(job: Job) -> dict[str, Any]:
         )
     order = [*axes.order, *(3 + k for k in axes.order)] if turned else [*range(len(names))]
     columns = [channels[names[k]] for k in order[: len(names)]]
+    reader.bundle_names = dict(zip(names, columns, strict=True))
     for episode in samples.episodes:
         unseen = np.isnan(episode.values).all(axis=0)
         if unseen.any():
@@ -188,7 +189,8 @@ def _fall_note(
     told = falls.Told(
         heights=column,
         height_axis=places.index(height),
-        metres=abs(reader.unit_of(column).factor),
+        unit=reader.unit_of(column),
+        is_named=any(reader.units.names(reader.fields[k].column) for k in places),
         clock=reader.clock,
         seconds=reader.clock_unit.factor,
         frames=isinstance(clock, dict) and "per_second" in clock,

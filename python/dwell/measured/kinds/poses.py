@@ -148,7 +148,8 @@ def _write(job: Job) -> dict[str, Any]:
     ]
     fields += fields_of(rates[0], "speed", "velocity", optional=True)
     fields += fields_of(rates[1], "spin", "angular_velocity", optional=True)
-    reader = SampleReader(job, part, here, fields)
+    starts = bool(mapping.get("starts"))
+    reader = SampleReader(job, part, here, fields, lends_scales=starts)
     step_s = 1.0 / rate_hz if rate_hz > 0 else None
     samples = reader.read(step_s=step_s, fewest=FEWEST)
     rotations.check(samples.episodes, reader.table.name, quaternion, rates[1], frame, axes, rate_hz)
@@ -169,7 +170,7 @@ def _write(job: Job) -> dict[str, Any]:
                 cells += [""] * (13 - len(cells))
                 write([episode.name, stamp, str(body.get("name")), *cells], episode.place(k))
     left_out: dict[str, None] = {}
-    if mapping.get("starts"):
+    if starts:
         job.progress(0.7, "starts")
         left_out = _write_starts(job, reader, samples.episodes, axes, in_body=frame == "body")
     if left_out:
@@ -208,9 +209,11 @@ def _write_starts(
     sample = require(part, "sample", at)
     names = [require(part, "episode", at)] if isinstance(part["episode"], str) else part["episode"]
     table.has([*names, sample, *linear, *angular])
-    units = ColumnUnits(part, at, ColumnUnits(reader.part, reader.at))
+    units = ColumnUnits(part, at, reader.units)
     speeds = [units.unit(column, "speed") for column in linear]
     spins = [units.unit(column, "spin") for column in angular]
+    units.refuse_unused()
+    reader.units.refuse_idle()
     # Where each of the user's samples is now.
     now = {
         (episode.source, int(number)): (episode.name, k)

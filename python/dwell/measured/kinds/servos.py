@@ -4,6 +4,11 @@ from __future__ import annotations
 
 from typing import Any
 
+import numpy as np
+from numpy.typing import NDArray
+
+from dwell.measured import following
+from dwell.measured.hints import FieldUnit
 from dwell.measured.kinds.form import Kind, counted, listing, write_episodes, write_manifest
 from dwell.measured.maps import (
     COLUMN,
@@ -115,7 +120,12 @@ def _write(job: Job) -> dict[str, Any]:
         rows = _held_commands(reader, samples)
         origin = {"t_s": [reader.clock], "value": [target]}
     else:
-        rows, origin = _listed_commands(job, samples)
+        rows, origin = _listed_commands(job, reader, samples)
+    following.check(
+        reader.table.name,
+        [_followed(episode, samples, rows) for episode in samples.episodes],
+        *(own for own in reader.hinted if own.dimension == "angle"),
+    )
     told = _write_commands(job, samples, rows, origin, name)
     left_out = {e.name: None for e in samples.episodes if e.name not in told}
     if left_out:
@@ -145,7 +155,9 @@ def _held_commands(reader: SampleReader, samples: Samples) -> Commands:
     }
 
 
-def _listed_commands(job: Job, samples: Samples) -> tuple[Commands, dict[str, list[str]]]:
+def _listed_commands(
+    job: Job, reader: SampleReader, samples: Samples
+) -> tuple[Commands, dict[str, list[str]]]:
     """A table of commands on the clock of the positions, and its columns."""
     part, at = job.part("commands")
     table = MeasuredTable(part, job.files, at)
@@ -156,6 +168,10 @@ def _listed_commands(job: Job, samples: Samples) -> tuple[Commands, dict[str, li
     units = ColumnUnits(part, at)
     seconds, radians = units.unit(clock, "time"), units.unit(target, "angle")
     units.refuse_unused()
+    units.refuse_idle()
+    reader.hinted.append(
+        FieldUnit(target, "angle", radians, units.names(target), "target", "commands")
+    )
     zeros = {e.source: e.zero * samples.clock.seconds_per_unit for e in samples.episodes}
     rows: Commands = {}
     unknown = 0
@@ -189,6 +205,18 @@ def _write_commands(
                 last = value
                 told_to.add(episode.name)
     return told_to
+
+
+def _followed(
+    episode: Episode, samples: Samples, rows: Commands
+) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
+    """The positions of an episode that have a target, and their targets."""
+    commands = sorted(rows.get(episode.source, []), key=lambda command: command[0])
+    told_s = [t_s for t_s, _, _ in commands]
+    last = np.searchsorted(told_s, episode.times * samples.clock.seconds_per_unit, "right") - 1
+    has = last >= 0
+    targets = np.array([value for _, value, _ in commands])
+    return episode.values[has, 0], targets[last[has]] if has.any() else np.zeros(0)
 
 
 def _within(commands: list[Command], episode: Episode, samples: Samples) -> list[Command]:

@@ -8,6 +8,7 @@ use crate::expert::{
 };
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::space::forward_from_yaw;
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
@@ -135,6 +136,23 @@ impl Leg {
         let agent = self.guide.agent();
         let object = nearest(world, agent, self.goal.objects())?;
         action_towards_object(world, agent, object, &self.stride)
+    }
+
+    /// Returns whether the agent has reached a place and a step forward would bring it no nearer: a stride may be longer than what is
+    /// left of the way.
+    pub(in crate::tasks) fn oversteps_goal(&self, world: &World) -> bool {
+        let Some(agent) = world.state().agents.get(self.guide.agent()) else {
+            return false;
+        };
+        let left_m = self.guide.distance_m(world);
+        if !self.goal.objects().is_empty() || !self.is_reached(world, left_m) {
+            return false;
+        }
+        let forward = forward_from_yaw(agent.yaw_rad) * self.stride.forward_m;
+        let grid = self.guide.grid();
+        let ahead = grid.nearest(agent.position + forward, 0.5);
+        let then_m = ahead.and_then(|cell| self.guide.distance_at(cell));
+        then_m.is_none_or(|then_m| left_m.is_some_and(|left_m| then_m >= left_m))
     }
 
     /// The expert's next step to open a thing in front of which it stands.

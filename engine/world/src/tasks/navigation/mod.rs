@@ -352,7 +352,8 @@ impl<K: GoalKind> Task for NavigationTask<K> {
             return DiscreteAction::Stop;
         };
         if let Some(step) = leg.approach(world) {
-            return step;
+            let walks_on = step == DiscreteAction::MoveForward && leg.oversteps_goal(world);
+            return if walks_on { DiscreteAction::Stop } else { step };
         }
         let looks_in_vain = !leg.goal.objects().is_empty() && !leg.is_reached(world, None);
         if looks_in_vain && leg.exclude_goals_within(world, ELSEWHERE_M) {

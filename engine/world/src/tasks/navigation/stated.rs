@@ -65,7 +65,8 @@ fn unwalkable(grid: &NavGrid, field: &'static str, point: Vec3) -> WorldError {
             let away_m = there.distance(point);
             let there = there.to_array();
             format!(
-                "a point where the agent can stand: the nearest is {there:?}, {away_m:.2} m away"
+                "a point where the agent can stand, clear of things and of the ground that doors sweep: the \
+                 nearest is {there:?}, {away_m:.2} m away"
             )
         }
         None => "a point where the agent can stand: the house has none near it".to_owned(),
