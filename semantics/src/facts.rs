@@ -164,6 +164,19 @@ impl ObjectFacts {
         shows_color(self.colors.iter().map(|(own, _)| *own), word)
     }
 
+    /// Its colours in spoken words with their shares of what a viewer sees of it, largest first; `rays`: how many meet each of its
+    /// materials.
+    pub(crate) fn colors_in_view(
+        &self,
+        house: &House,
+        paints: &MaterialColors,
+        rays: &[(MaterialId, f32)],
+    ) -> Vec<(&'static str, f32)> {
+        let named = named_surfaces(house, self.category, rays);
+        let patches = patches(house, paints, &named);
+        color_words(&patches, ColorVocabulary::Spoken)
+    }
+
     /// Returns whether at least [`TRACE_SHARE`] of what is seen of it has a colour, or one that some people call so.
     pub(crate) fn shows_trace_of(&self, word: &str) -> bool {
         let seen = self

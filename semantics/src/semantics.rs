@@ -1,6 +1,6 @@
 //! The entry point: a house with its semantics.
 
-use crate::color::MaterialColors;
+use crate::color::{ColorVocabulary, MaterialColors, color_words};
 use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
@@ -18,7 +18,7 @@ use dwell_scene::navigation::NavGrid;
 use dwell_scene::parallel::Threads;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Aabb, AgentBody, AgentId, House, Id, IdVec, ObjectId, RoomId, State, StructureId,
+    Aabb, AgentBody, AgentId, House, Id, IdVec, MaterialId, ObjectId, RoomId, State, StructureId,
 };
 use glam::Vec2;
 use std::collections::BTreeMap;
@@ -112,6 +112,15 @@ impl Semantics {
             });
             Language::english().with_nouns(nouns, rooms)
         })
+    }
+
+    /// The colours of walls or a floor in words with their shares, largest first, by the rays that meet each material.
+    pub(crate) fn surface_color_words(
+        &self,
+        rays: &[(MaterialId, f32)],
+    ) -> Vec<(&'static str, f32)> {
+        let patches = self.colors.patches(rays.iter().copied());
+        color_words(&patches, ColorVocabulary::Surface)
     }
 
     pub(crate) fn shared_house(&self) -> &Arc<House> {

@@ -10,6 +10,7 @@ mod options;
 mod reference;
 mod room;
 mod route;
+mod seen_colors;
 mod surroundings;
 mod text;
 mod view;

@@ -3,6 +3,7 @@
 use super::item::{appearance, grouped, items};
 use super::options::{TextLength, TextOptions, TextStyle};
 use super::room::surfaces;
+use super::seen_colors;
 use super::text::{GroundedText, TextWriter, claim};
 use crate::check::{Addressee, Checker, rounded_distance_m};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
@@ -29,6 +30,8 @@ const MAX_BESIDE_M: f32 = 1.5;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
 const MAX_OVERLAP: f32 = 0.1;
 
+/// Tangent of the border between the middle third of a picture and the outer ones.
+const THIRD: f32 = 1.0 / 3.0;
 /// Distance before what fills an opening at which the room that it is seen in is looked up, m.
 const BEFORE_M: f32 = 0.3;
 
@@ -103,8 +106,9 @@ impl ViewTeller<'_, '_> {
         // A place in an order, or beside something small, is a clumsy name for what the text tells of anyway.
         let name = refer_in_view(self.checker, self.survey, object);
         let is_carried = |own: &Modifier| ["in", "on"].contains(&own.predicate.as_str());
-        let name =
-            name.filter(|own| own.selection.is_none() && own.modifiers.iter().all(is_carried));
+        let name = name
+            .filter(|own| own.selection.is_none() && own.modifiers.iter().all(is_carried))
+            .filter(|own| seen_colors::thing_shows(self.scene(), self.survey, object, &own.colors));
         self.names.borrow_mut().insert(object, name.clone());
         name
     }
@@ -122,14 +126,40 @@ impl ViewTeller<'_, '_> {
         seen.is_some_and(|own| own.span[1] - own.span[0] > 1.0)
     }
 
+    /// Returns whether something that moves is seen of a door: without its leaf people see an opening.
+    fn shows_leaf(&self, object: ObjectId) -> bool {
+        let scene = self.scene();
+        if scene.semantics.doorway(object).is_none() {
+            return true;
+        }
+        let joints = scene.house().joints.iter();
+        let mut leaves = joints.filter(|joint| joint.object == object).peekable();
+        leaves.peek().is_none() || leaves.any(|joint| self.survey.is_part_seen(joint.child))
+    }
+
+    /// Returns whether neither of two things lies with its middle before or behind the other in the picture.
+    fn is_beside_in_picture(&self, one: ObjectId, other: ObjectId) -> bool {
+        let span = |object| self.survey.objects.get(&object).map(|own| own.span);
+        let (Some(one), Some(other)) = (span(one), span(other)) else {
+            return false;
+        };
+        let apart = |[left, right]: [f32; 2], [from, to]: [f32; 2]| {
+            let middle = 0.5 * (left + right);
+            middle < from || middle > to
+        };
+        apart(one, other) && apart(other, one)
+    }
+
     /// The side on which a thing is told: that of its middle, if it does not reach over to another.
     fn side(&self, object: ObjectId) -> Option<&'static str> {
         let side = SIDES.into_iter().find(|side| self.holds(side, object))?;
         let [left, right] = self.survey.objects.get(&object)?.span;
+        // What is seen of it must lie there, too: of a door that stands open to the right people see the leaf.
+        let middle = 0.5 * (left + right);
         let clear = match side {
-            "on_left" => right <= MAX_OVERLAP,
-            "on_right" => left >= -MAX_OVERLAP,
-            _ => true,
+            "on_left" => right <= MAX_OVERLAP && middle <= -THIRD,
+            "on_right" => left >= -MAX_OVERLAP && middle >= THIRD,
+            _ => middle.abs() <= THIRD,
         };
         clear.then_some(side)
     }
@@ -208,7 +238,15 @@ impl ViewTeller<'_, '_> {
         let mut found = items(self.scene(), objects, &visible, self.style);
         for (item, group) in found.iter_mut().zip(groups) {
             let number = group.objects.len() as u32;
+            let looks = |object: &ObjectId| {
+                seen_colors::thing_shows(self.scene(), self.survey, *object, &item.colors)
+            };
+            let is_as_seen = group.objects.iter().all(looks);
+            if !is_as_seen {
+                item.colors.clear();
+            }
             item.quantifier = match item.quantifier {
+                _ if !is_as_seen && number > 1 => Quantifier::AtLeast(number),
                 _ if number == 1 => Quantifier::Some,
                 Quantifier::Exactly(all) if all == number => item.quantifier,
                 _ => Quantifier::AtLeast(number),
@@ -281,6 +319,13 @@ impl ViewTeller<'_, '_> {
         let seen: Vec<RoomSurfaceKind> = seen.map(|(_, surface)| surface).collect();
         let mut surfaces = surfaces(scene, room);
         surfaces.retain(|surface| seen.contains(&surface.kind));
+        for surface in &mut surfaces {
+            let shows = |word: &mut String| {
+                !seen_colors::surface_shows(scene, self.survey, (room, surface.kind), word)
+            };
+            surface.color.take_if(shows);
+        }
+        surfaces.retain(|surface| surface.color.is_some() || surface.material.is_some());
         if !surfaces.is_empty() {
             let room = self.own_room(room);
             self.writer
@@ -325,6 +370,7 @@ impl ViewTeller<'_, '_> {
                 let fits = match name {
                     "above" => true,
                     "left_of" | "right_of" if self.is_wide(object) => false,
+                    "left_of" | "right_of" if !self.is_beside_in_picture(object, other) => false,
                     // A chair at a table is not under it.
                     "under" => own.max.y < mark.max.y,
                     // A lamp on the ceiling is not to the left of a chair.
@@ -486,6 +532,7 @@ pub fn describe_views(
                 && own.unhidden >= LEAST_UNHIDDEN
                 && scene.holder(**object).is_none()
                 && teller.holds("visible", **object)
+                && teller.shows_leaf(**object)
         });
         teller.told = told.map(|(object, _)| *object).collect();
         teller.say(&ViewLimits::of(options.length));

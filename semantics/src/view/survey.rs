@@ -4,7 +4,10 @@ use crate::clear_glass::is_transparent;
 use crate::scene::{SemanticScene, Viewer};
 use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::interrupt::CancelPoller;
-use dwell_scene::{Entity, EntityId, ObjectId, StructureId, StructureKind};
+use dwell_scene::{
+    Entity, EntityId, House, MaterialId, ObjectId, PartId, RoomId, StructureId, StructureKind,
+    SurfaceOwner,
+};
 use glam::Vec3;
 use std::collections::BTreeMap;
 
@@ -37,6 +40,10 @@ pub struct ViewSurvey {
     pub objects: BTreeMap<ObjectId, Sighting>,
     /// The share of the picture that is each piece of the building.
     pub structure: BTreeMap<StructureId, f32>,
+    /// The numbers of rays that meet each part of a thing first, by material.
+    parts: BTreeMap<(PartId, MaterialId), u32>,
+    /// The same of pieces of the building.
+    pieces: BTreeMap<(StructureId, MaterialId), u32>,
 }
 
 /// Rays that meet a thing.
@@ -75,6 +82,7 @@ impl ViewSurvey {
         let (house, rays) = (scene.house(), scene.rays());
         let eye = viewer.world_from_camera.position;
         let mut counts: BTreeMap<i32, RayCounts> = BTreeMap::new();
+        let mut survey = Self::default();
         let mut hits: Vec<Hit> = Vec::new();
         let mut met: Vec<i32> = Vec::new();
         let mut poll = CancelPoller::new(RAYS_PER_CHECK);
@@ -99,6 +107,7 @@ impl ViewSurvey {
                 let own = counts.entry(hit.id).or_insert(RayCounts::NONE);
                 own.any += 1;
                 if was_seen {
+                    survey.count_surface(rays.owner_and_material(hit));
                     own.first += 1;
                     own.span = [own.span[0].min(x), own.span[1].max(x)];
                     if hit.distance_m < own.nearest_m {
@@ -108,7 +117,6 @@ impl ViewSurvey {
                 }
             }
         }
-        let mut survey = Self::default();
         for (id, own) in counts {
             let Some(sighting) = own.sighting() else {
                 continue;
@@ -126,6 +134,48 @@ impl ViewSurvey {
         survey
     }
 
+    fn count_surface(&mut self, (owner, material): (SurfaceOwner, MaterialId)) {
+        let count = match owner {
+            SurfaceOwner::Part(part) => self.parts.entry((part, material)).or_insert(0),
+            SurfaceOwner::Structure(piece) => self.pieces.entry((piece, material)).or_insert(0),
+        };
+        *count += 1;
+    }
+
+    /// The materials of a thing with the numbers of rays that meet them first.
+    pub(crate) fn materials_of(&self, house: &House, object: ObjectId) -> Vec<(MaterialId, f32)> {
+        let parts = self.parts.iter();
+        summed(
+            parts
+                .filter(|((part, _), _)| house.parts[*part].object == object)
+                .map(|((_, material), rays)| (*material, *rays)),
+        )
+    }
+
+    /// The same of the walls or floors that border a room.
+    pub(crate) fn materials_of_structure(
+        &self,
+        house: &House,
+        room: RoomId,
+        kind: StructureKind,
+    ) -> Vec<(MaterialId, f32)> {
+        let is_own = |piece: StructureId| {
+            let own = &house.structure[piece];
+            own.kind == kind && own.room.is_none_or(|own| own == room)
+        };
+        let pieces = self.pieces.iter();
+        summed(
+            pieces
+                .filter(|((piece, _), _)| is_own(*piece))
+                .map(|((_, material), rays)| (*material, *rays)),
+        )
+    }
+
+    /// Returns whether a ray meets a part of a thing first.
+    pub(crate) fn is_part_seen(&self, part: PartId) -> bool {
+        self.parts.keys().any(|(own, _)| *own == part)
+    }
+
     /// The share of the picture that pieces of the building of one kind cover, 0 to 1.
     pub fn structure_share(&self, scene: &SemanticScene<'_>, kind: StructureKind) -> f32 {
         let own = self.structure.iter();
@@ -133,4 +183,12 @@ impl ViewSurvey {
             .map(|(_, share)| share)
             .sum()
     }
+}
+
+fn summed(rays: impl Iterator<Item = (MaterialId, u32)>) -> Vec<(MaterialId, f32)> {
+    let mut sums: BTreeMap<MaterialId, f32> = BTreeMap::new();
+    for (material, count) in rays {
+        *sums.entry(material).or_insert(0.0) += count as f32;
+    }
+    sums.into_iter().collect()
 }
