@@ -4,7 +4,7 @@ use crate::color::ColorVocabulary;
 use crate::form::{Description, Modifier, Noun, Phrase};
 use crate::predicates;
 use crate::scene::{
-    Attribute, DistractorSet, LandmarkQuery, ObjectList, RelatedPairs, SemanticScene,
+    Attribute, DistractorSet, LandmarkQuery, MOST_NEAR, ObjectList, RelatedPairs, SemanticScene,
 };
 use crate::size::SizeClass;
 use dwell_scene::interrupt::CancelPoller;
@@ -15,6 +15,18 @@ use std::rc::Rc;
 
 /// Relations to landmarks, the most informative first.
 pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
+/// Nouns of things that readers also call by another, and whether such things have their own colour: flowers stand in vases of any.
+pub(super) const LOOK_ALIKES: [(&str, &str, bool); 7] = [
+    ("book", "row of books", true),
+    ("vase", "bunch of flowers", false),
+    ("kitchen unit", "wall cabinet", true),
+    ("kitchen unit", "kitchen cabinet", true),
+    ("kitchen cabinet", "wall cabinet", true),
+    ("kitchen cabinet", "kitchen unit", true),
+    ("wall cabinet", "kitchen cabinet", true),
+];
+/// Distance up to which readers take a thing for one beside another, m: the relation ends at 0.5 m.
+const BESIDE_TO_READERS_M: f32 = 0.8;
 /// Things between checks for cancellation.
 const THINGS_PER_CHECK: usize = 64;
 
@@ -33,6 +45,14 @@ fn push(lists: &mut BTreeMap<Attribute, Vec<ObjectId>>, key: Attribute, id: Obje
     if list.last() != Some(&id) {
         list.push(id);
     }
+}
+
+/// The things beside which readers may see a thing: neighbours, and what is a little farther away.
+fn beside_to_readers(scene: &SemanticScene<'_>, object: ObjectId) -> Vec<ObjectId> {
+    let own = scene.extent(object).bounds;
+    scene.objects_near(&own.grown(BESIDE_TO_READERS_M), MOST_NEAR, |other| {
+        other != object && scene.room_of(other) == scene.room_of(object)
+    })
 }
 
 /// The room that a modifier places things in, by its noun.
@@ -133,10 +153,28 @@ impl DistractorSet {
         scene: &SemanticScene<'_>,
         description: &Description,
     ) -> ObjectList {
+        self.matching_by(scene, description, Attribute::Color)
+    }
+
+    /// The same of things that show at least a trace of its first colour: a row of books may have a yellow one.
+    pub(super) fn matching_by_trace(
+        &self,
+        scene: &SemanticScene<'_>,
+        description: &Description,
+    ) -> ObjectList {
+        self.matching_by(scene, description, Attribute::TraceOfColor)
+    }
+
+    fn matching_by(
+        &self,
+        scene: &SemanticScene<'_>,
+        description: &Description,
+        first: fn(String) -> Attribute,
+    ) -> ObjectList {
         let colors = description.colors.iter().cloned().enumerate();
         // The worktop of one unit makes it no other than the next one, whose worktop is narrower.
         let colors = colors.map(|(k, word)| match k {
-            0 => Attribute::Color(word),
+            0 => first(word),
             _ => Attribute::TraceOfColor(word),
         });
         let material = description.material.iter().cloned();
@@ -173,7 +211,11 @@ impl DistractorSet {
                 }
                 for id in self.things.iter().copied() {
                     pace.count_one();
-                    for other in predicates::related_objects(scene, *predicate, id) {
+                    let related = match predicate.name() {
+                        "next_to" => beside_to_readers(scene, id),
+                        _ => predicates::related_objects(scene, *predicate, id),
+                    };
+                    for other in related {
                         let kind = scene.semantics.noun_index().kind_of(other);
                         let list = pairs.entry((predicate.name(), kind)).or_default();
                         list.push((id, other));
@@ -214,7 +256,11 @@ impl DistractorSet {
                 .map_or(&[], std::slice::from_ref),
         };
         let mut found: Vec<ObjectId> = Vec::new();
-        for kind in scene.semantics.kinds_called(noun) {
+        let look_alikes = LOOK_ALIKES.iter().filter(|(own, ..)| own == noun);
+        let nouns = look_alikes
+            .map(|(_, other, _)| *other)
+            .chain([noun.as_str()]);
+        for kind in nouns.flat_map(|noun| scene.semantics.kinds_called(noun)) {
             let pairs = names.iter().filter_map(|name| pairs.get(&(*name, kind)));
             for (id, other) in pairs.flatten() {
                 if found.last() != Some(id) && scene.facts(*other).may_match_properties(landmark) {

@@ -1,6 +1,6 @@
 //! The shortest description that fits exactly one thing.
 
-use super::distractors::{TELLING, intersection};
+use super::distractors::{LOOK_ALIKES, TELLING, intersection};
 use crate::category::SemanticCategory;
 use crate::color::Oklab;
 use crate::form::{Description, Modifier, Noun, Quantifier};
@@ -64,16 +64,6 @@ pub(crate) fn property_descriptions(
 
 /// Share of a thing's longest edge below which what lies beside it does not lead to it.
 const LEAST_LANDMARK: f32 = 0.25;
-/// Nouns of things that readers also call by another, and whether such things have their own colour: flowers stand in vases of any.
-const LOOK_ALIKES: [(&str, &str, bool); 7] = [
-    ("book", "row of books", true),
-    ("vase", "bunch of flowers", false),
-    ("kitchen unit", "wall cabinet", true),
-    ("kitchen unit", "kitchen cabinet", true),
-    ("kitchen cabinet", "wall cabinet", true),
-    ("kitchen cabinet", "kitchen unit", true),
-    ("wall cabinet", "kitchen cabinet", true),
-];
 /// Distance of the main colours of two things, in `OKLab`, below which readers do not tell them apart by these: three times what is just
 /// noticeable.
 const ALIKE: f32 = 0.06;
@@ -174,7 +164,7 @@ pub fn refer(scene: &SemanticScene<'_>, target: ObjectId) -> Option<Description>
             if !colored {
                 seen.colors.clear();
             }
-            things.matching(scene, &seen)
+            things.matching_by_trace(scene, &seen)
         };
         look_alikes.iter().map(of).collect()
     };
