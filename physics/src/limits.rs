@@ -64,12 +64,11 @@ struct PairWork {
 }
 
 impl PairWork {
-    /// Returns where to flush in between. Joints are attached only later, so bodies on joints, and those after them, wait.
-    fn pauses(&self, model: &PhysicsModel) -> Vec<usize> {
+    /// Returns where to flush in between.
+    fn pauses(&self) -> Vec<usize> {
         if self.steps.iter().sum::<u64>() < MANY_STEPS {
             return Vec::new();
         }
-        let first_jointed = model.bodies.iter().position(|plan| plan.joint.is_some());
         let mut pauses = Vec::new();
         let mut since = 0;
         for (body, steps) in self.steps.iter().enumerate() {
@@ -79,7 +78,6 @@ impl PairWork {
             }
             since += steps;
         }
-        pauses.retain(|body| first_jointed.is_none_or(|first| *body <= first));
         pauses
     }
 }
@@ -128,7 +126,7 @@ pub(crate) fn check(model: &PhysicsModel, state: &State) -> Result<PairLoad, Phy
         } else {
             PairDensity::Low
         },
-        pauses: work.pauses(model),
+        pauses: work.pauses(),
     })
 }
 
@@ -300,14 +298,38 @@ mod tests {
         (model, state)
     }
 
+    /// The same in a room with a door that comes first.
+    fn behind_a_door(model: &PhysicsModel) -> (PhysicsModel, State) {
+        let mut data = model.house.data().clone();
+        let part = &mut data.parts[PartId(0)];
+        part.world_from_part = Pose::from_position(Vec3::new(1.0, 1.0, 1.0));
+        let (name, kind) = ("hinge", dwell_scene::JointKind::Hinge);
+        let joint = dwell_scene::Joint::new(name, ObjectId(0), PartId(0), kind, Vec3::Y);
+        data.joints.push(joint);
+        data.objects[ObjectId(0)].mobility = Mobility::Articulated;
+        let model = PhysicsModel::new(Arc::new(House::new(data).unwrap()));
+        let state = State::new(&model.house);
+        (model, state)
+    }
+
     /// rapier looks through all pairs of a piece for each that it adds, and asks nobody meanwhile.
     #[test]
     fn a_heap_is_inserted_in_portions_of_bounded_work() {
         let (model, state) = boxes(400, 0.0);
-        let (near, work) = broad_phase_pairs(&model, &state).unwrap();
+        assert_portions_are_bounded(&model, &state);
+        let (model, state) = behind_a_door(&boxes(401, 0.0).0);
+        assert!(model.bodies[0].joint.is_some());
+        assert_portions_are_bounded(&model, &state);
+        // As many that hardly touch are inserted at once.
+        let (model, state) = boxes(400, 0.15);
+        assert_eq!(check(&model, &state).unwrap(), PairLoad::LOW);
+    }
+
+    fn assert_portions_are_bounded(model: &PhysicsModel, state: &State) {
+        let (near, work) = broad_phase_pairs(model, state).unwrap();
         assert!(near >= 400 * 399 / 2, "{near}");
-        let pauses = check(&model, &state).unwrap().pauses;
-        let ends = pauses.iter().copied().chain([400]);
+        let pauses = check(model, state).unwrap().pauses;
+        let ends = pauses.iter().copied().chain([model.bodies.len()]);
         let starts = std::iter::once(0).chain(pauses.iter().copied());
         let largest = *work.steps.iter().max().unwrap();
         for (start, end) in starts.zip(ends) {
@@ -318,9 +340,6 @@ mod tests {
             );
         }
         assert!((5..20).contains(&pauses.len()), "{pauses:?}");
-        // As many that hardly touch are inserted at once.
-        let (model, state) = boxes(400, 0.15);
-        assert_eq!(check(&model, &state).unwrap(), PairLoad::LOW);
     }
 
     /// rapier looks through the pairs of the piece that was inserted first, which would be the floor for each thing on it.

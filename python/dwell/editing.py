@@ -592,5 +592,8 @@ class HouseEdit(EditList):
             self._made = self.done()
 
 
-def _edited(base: House, edits: str) -> House:
-    return House(base.native.edited(edits), (_edited, (base, edits)))
+def _edited(base: House, *edits: str) -> House:
+    native = base.native
+    for each in edits:
+        native = native.edited(each)
+    return House(native, base.again_after(_edited, *edits))

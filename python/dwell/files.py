@@ -147,6 +147,16 @@ def lines(file: IO[bytes], name: _Name, most_bytes: int = MAX_TEXT_BYTES) -> Ite
         yield line
 
 
+def split_lines(text: str) -> list[str]:
+    """The lines of a text: they end by LF, or CR and LF, and by nothing else.
+
+    ``str.splitlines`` ends lines at form feeds and separators of Unicode, too.
+    """
+    rows = [row.removesuffix("\r") for row in text.split("\n")]
+    # What follows the last end is a line only where it is something.
+    return rows if rows[-1] else rows[:-1]
+
+
 def decoded(text: bytes, at: str) -> str:
     """A text in UTF-8 without a mark at its beginning.
 

@@ -242,6 +242,16 @@ class House:
 
         return HouseEdit(self)
 
+    def again_after(
+        self, change: Callable[..., House], *edits: str
+    ) -> tuple[Callable[..., House], tuple[Any, ...]]:
+        """How this house is made again after edits: from the house that was edited first.
+
+        Houses in between are not held, so that they go when nobody else holds them.
+        """
+        made, arguments_ = self._reopen_state or (None, ())
+        return change, (*(arguments_ if made is change else (self,)), *edits)
+
     def map_template(self) -> str:
         """A map file with all unmapped names, to be filled in."""
         return self._native.map_template(self.name)

@@ -10,7 +10,7 @@ from collections.abc import Iterator
 
 from dwell import ConfigError, HouseError, HouseNotFoundError, _native
 from dwell.arguments import text
-from dwell.files import read
+from dwell.files import read, split_lines
 from dwell.path_patterns import matching_paths
 
 #: Splits are the seeds below this; of a split's houses each has a number, its place among them.
@@ -147,12 +147,15 @@ def _paths(house: str, folder: str) -> Iterator[str]:
 
 
 def _listed(path: str, folder: str) -> Iterator[str | Seeds]:
-    """The houses of a list: a HOUSES string a line; ``#`` begins a comment of a whole line."""
+    """The houses of a list: a HOUSES string a line; ``#`` begins a comment of a whole line.
+
+    Blanks and tabs around a string are none of it; every other letter may be one of a path.
+    """
     if not path:
         raise HouseError("@: expected @FILE, a file with a HOUSES string a line")
     place = os.path.join(folder, path)
     try:
-        rows = read(place).decode("utf-8-sig").splitlines()
+        rows = split_lines(read(place).decode("utf-8-sig"))
     except UnicodeDecodeError as error:
         raise HouseError(f"{place}: byte {error.start} is not UTF-8") from None
     except ValueError as error:
@@ -163,7 +166,7 @@ def _listed(path: str, folder: str) -> Iterator[str | Seeds]:
         raise HouseError(f"{place}: {len(rows)} lines; at most {_MOST_NAMED} are read")
     is_empty = True
     for number, row in enumerate(rows, start=1):
-        house, at = row.strip(), f"{place} line {number}"
+        house, at = row.strip(" \t"), f"{place} line {number}"
         if not house or house.startswith("#"):
             continue
         is_empty = False

@@ -22,6 +22,7 @@ from dwell.arguments import (
 from dwell.camera import Camera, Preset
 from dwell.edit_fields import rgb
 from dwell.house import House
+from dwell.messages import printable
 from dwell.world import World
 
 #: Pictures are drawn this much larger and then made smaller, so that edges are smooth.
@@ -102,7 +103,8 @@ def floor_plan(
     for stroke, way in strokes:
         _draw_path(draw, stroke, [place(x, z) for x, _, z in way], line)
     for room in plan["rooms"]:
-        _name(draw, room, place(*room["label_position"]), _SUPERSAMPLING * edge)
+        at = place(*room["label_position"])
+        _name(draw, room, at, _SUPERSAMPLING * edge, canvas.width)
     _scale(draw, canvas.size, scale, foot, line)
     return _smooth(canvas)
 
@@ -189,7 +191,8 @@ def sheet(
     """Pictures beside and below one another, each with a line below it.
 
     Args:
-        pictures: A title and a picture each; they are made smaller to fit, never larger.
+        pictures: A title and a picture each; they are made smaller to fit, never larger. Of a
+            title that is longer than its line the beginning and the end are shown.
         columns: Pictures in a row, from 1.
         tile: Pixels across and down for each.
     """
@@ -211,7 +214,7 @@ def sheet(
         small = picture.convert("RGB")
         small.thumbnail((across, down), Image.Resampling.LANCZOS)
         canvas.paste(small, (x + (across - small.width) // 2, y + (down - small.height) // 2))
-        _text(draw, (x + 2, y + down + 18), title, 15, _TEXT_COLOR)
+        _text(draw, (x + 2, y + down + 18), title, 15, _TEXT_COLOR, widest=across - 2)
     return canvas
 
 
@@ -362,13 +365,12 @@ def _draw_path(
 
 
 def _name(
-    draw: ImageDraw.ImageDraw, room: dict[str, Any], at: tuple[float, float], edge: int
+    draw: ImageDraw.ImageDraw, room: dict[str, Any], at: tuple[float, float], edge: int, wide: int
 ) -> None:
-    """The room's word with its area below it."""
+    """The room's word, at most so wide, with its area below it."""
     halo = max(edge // 500, 1)
-    _text(
-        draw, (at[0], at[1] - edge * 0.004), _room_title(room), edge * 0.02, _TEXT_COLOR, halo, 0.5
-    )
+    place, word = (at[0], at[1] - edge * 0.004), _room_title(room)
+    _text(draw, place, word, edge * 0.02, _TEXT_COLOR, halo, 0.5, widest=wide)
     area = f"{room['area_m2']:.1f} m²"
     _text(draw, (at[0], at[1] + edge * 0.016), area, edge * 0.016, _SECONDARY_COLOR, halo, 0.5)
 
@@ -381,20 +383,44 @@ def _text(
     color: tuple[int, int, int],
     halo: int = 0,
     before: float = 0.0,
+    widest: float | None = None,
 ) -> None:
     """A line of words on the baseline at a place, of which a part stands before it.
 
-    The font that comes with Pillow has no raised 2: one at the end is a small one, raised.
+    The font that comes with Pillow has no raised 2: one at the end is a small one, raised. Of words
+    that are wider than ``widest``, pixels, the middle is left out.
     """
     raised = words.endswith("²")
     words, font, small = words.removesuffix("²"), _font(size), _font(0.7 * size)
-    width = draw.textlength(words, font) + (draw.textlength("2", small) if raised else 0.0)
+    beside = draw.textlength("2", small) if raised else 0.0
+    if widest is not None:
+        words = _fitted(words, widest - beside, lambda part: draw.textlength(part, font))
+    width = draw.textlength(words, font) + beside
     x, y = at[0] - before * width, at[1]
     halo_color = _BACKGROUND_COLOR if halo else None
     draw.text((x, y), words, color, font, "ls", stroke_width=halo, stroke_fill=halo_color)
     if raised:
         place = (x + draw.textlength(words, font), y - 0.35 * size)
         draw.text(place, "2", color, small, "ls", stroke_width=halo, stroke_fill=halo_color)
+
+
+def _fitted(words: str, widest: float, width_of: Callable[[str], float]) -> str:
+    """Words on one line, without their middle where they are wider than ``widest``."""
+    words = " ".join(printable(words).splitlines())
+
+    # Letters narrower than half a pixel cannot be read, and Pillow refuses to measure long text.
+    most = min(len(words), max(round(2.0 * widest), 0))
+    if most == len(words) and width_of(words) <= widest:
+        return words
+
+    def part(count: int) -> str:
+        return f"{words[: count - count // 2]}...{words[len(words) - count // 2 :]}"
+
+    low, high = 0, most + 1
+    while high - low > 1:
+        middle = (low + high) // 2
+        low, high = (middle, high) if width_of(part(middle)) <= widest else (low, middle)
+    return part(low) if width_of(part(low)) <= widest else ""
 
 
 def _scale(

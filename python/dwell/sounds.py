@@ -98,7 +98,7 @@ def read_wav(
     Raises:
         ConfigError: ``full_scale_pa`` is no number above 0.
         MeasuredDataError: The file is no WAV, is shorter than its header says, holds samples of
-            another form, or has more than 512 MiB.
+            another form or such that are no finite numbers of 32 bits, or has more than 512 MiB.
         OSError: The system refuses, or it is no regular file.
     """
     full_scale_pa = above_zero("full_scale_pa", full_scale_pa)
@@ -140,14 +140,16 @@ def read_wav(
         frames = (packed.view(kind) >> 8).reshape(-1, channels)
     else:
         frames = np.frombuffer(data, kind).reshape(-1, channels)
-    scaled = frames.T * np.float64(scale)
-    with np.errstate(over="ignore"):
+    # Signalling NaNs are told below, as all that is no number.
+    with np.errstate(over="ignore", invalid="ignore"):
+        scaled = frames.T * np.float64(scale)
         sound = scaled.astype(np.float32)
-    if (lost := np.isinf(sound) & np.isfinite(scaled)).any():
-        channel, sample = (int(k) for k in np.argwhere(lost)[0])
+    if not (finite := np.isfinite(sound)).all():
+        channel, sample = (int(k) for k in np.argwhere(~finite)[0])
+        value = scaled[channel, sample]
+        allowed = "numbers up to 3.4e+38 either way" if np.isfinite(value) else "finite numbers, Pa"
         raise MeasuredDataError(
-            f"{path}: sample {sample} of channel {channel} is {scaled[channel, sample]:g}; allowed "
-            "are numbers up to 3.4e+38 either way"
+            f"{path}: sample {sample} of channel {channel} is {value:g}; allowed are {allowed}"
         )
     return sound, rate_hz
 

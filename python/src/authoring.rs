@@ -38,7 +38,7 @@ pub(crate) fn apply_edits(
     let (house, report) = authoring::edit(base, &edits, &FileAccess::Anywhere)?;
     check_signals(&house, base.emitters.len())?;
     let mut all = report_of(base_report);
-    all.append(report);
+    all.append_by_place(report);
     Ok((house, report_rows(&all)?))
 }
 

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import gc
 import json
 import math
 import pickle
 import wave
+import weakref
 from collections.abc import Callable
 from pathlib import Path
 
@@ -78,6 +80,24 @@ def test_edits_make_a_new_house_that_pickles_and_writes(tmp_path: Path) -> None:
     assert told == pytest.approx(2.0)
     back = changed.edit().remove("mine", with_things=True).done()
     assert not {"mine", "brick"} & set(names(back))
+
+
+def test_a_chain_of_edits_holds_its_first_house_and_pickles() -> None:
+    first = dwell.House.shoebox((4.0, 2.5, 3.0), substance="plaster")
+    house = first.edit().add_box((0.2, 0.2, 0.2), (0.05, 0.0, 1.0), name="crate").done()
+    middle = house.edit().rename("middle").done()
+    between, house = weakref.ref(middle), middle
+    for k in range(1200):
+        house = house.edit().move("crate", by=(0.001 if k % 2 else -0.001, 0.0, 0.0)).done()
+    del middle
+    gc.collect()
+    assert between() is None
+    report = house.info()["report"]["warnings"]
+    assert [row["at"]["field"] for row in report] == ["crate"]
+    assert report[0]["count"] > 1000
+    again = pickle.loads(pickle.dumps(house))
+    assert again == house
+    assert again.info()["report"] == house.info()["report"]
 
 
 def names(house: dwell.House) -> list[str]:

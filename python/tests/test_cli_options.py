@@ -69,6 +69,41 @@ def test_a_number_that_stands_twice_is_refused(capsys: pytest.CaptureFixture[str
     assert "fx stands twice" in capsys.readouterr().err
 
 
+@pytest.mark.parametrize(
+    ("words", "field", "value"),
+    [
+        (f"render {HOUSE} --out x --yaw-deg -1e1", "yaw_deg", -10.0),
+        (f"render {HOUSE} --out x --yaw-deg -1.5E0", "yaw_deg", -1.5),
+        (f"render {HOUSE} --out x --yaw-deg -.5", "yaw_deg", -0.5),
+        (f"render {HOUSE} --out x --at -2e-1,1,3", "at", (-0.2, 1.0, 3.0)),
+        (f"render {HOUSE} --out x --at -.5,1,3", "at", (-0.5, 1.0, 3.0)),
+        (f"localize make {HOUSE} --count 1 --out x --snr-db -1e1 5", "snr_db", [-10.0, 5.0]),
+        (f"localize make {HOUSE} --count 1 --out x --snr-db -1e1 -5e-1", "snr_db", [-10.0, -0.5]),
+    ],
+)
+def test_a_negative_number_of_any_form_is_a_value(words: str, field: str, value: object) -> None:
+    args = cli.parser(words.split()[0]).parse_args(words.split())
+    assert getattr(args, field) == value
+
+
+@pytest.mark.parametrize(
+    ("words", "told"),
+    [
+        (f"render {HOUSE} --out x --yaw-deg -inf", "--yaw-deg: expected a finite number, found"),
+        (f"render {HOUSE} --out x --yaw-deg -NaN", "--yaw-deg: expected a finite number, found"),
+        (f"render {HOUSE} --out x --at -inf,1,2", "--at: expected finite numbers X,Y,Z, found"),
+        (f"render {HOUSE} --out x --width -1e3", "--width: expected a whole number from 1 to"),
+        (f"localize make {HOUSE} --count 1 --out x --snr-db -inf 5", "expected a finite number"),
+        (f"render {HOUSE} --out x --yaw-deg --map", "--yaw-deg: expected one argument"),
+    ],
+)
+def test_a_negative_number_that_does_not_fit_is_told_as_one(
+    words: str, told: str, capsys: pytest.CaptureFixture[str]
+) -> None:
+    assert cli.main(words.split()) == 2
+    assert told in capsys.readouterr().err
+
+
 def in_shell(command: str) -> subprocess.CompletedProcess[str]:
     whole = command.replace("dwell", f"{sys.executable} -m dwell", 1)
     return subprocess.run(

@@ -122,6 +122,22 @@ def test_a_list_names_houses_relative_to_its_folder(tmp_path: Path) -> None:
     ]
 
 
+@pytest.mark.parametrize("ending", ["\n", "\r\n"])
+def test_a_line_of_a_list_ends_by_a_line_feed_alone(tmp_path: Path, ending: str) -> None:
+    odd = [f"a{mark}b.json" for mark in "\v\f\r\x1c\x1d\x1e\x85\u2028\u2029"]
+    # Of a path, its ends too.
+    odd += ["\u2028c.json\u2029", "\xa0d.json\f"]
+    path = tmp_path / "list.txt"
+    path.write_bytes(ending.join([*odd, "", " \tseed:3..5\t "]).encode())
+    assert [*HouseList([f"@{path}"])] == [
+        *(f"{tmp_path}/{name}" for name in odd),
+        "seed:3",
+        "seed:4",
+    ]
+    path.write_bytes(f"builtin:studio{ending}".encode())
+    assert [*HouseList([f"@{path}"])] == ["builtin:studio"]
+
+
 @pytest.mark.parametrize(
     ("content", "told"),
     [

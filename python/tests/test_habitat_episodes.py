@@ -350,7 +350,7 @@ def test_places_off_the_floor_are_skipped_or_moved(
     assert done.returncode == 0, done.stderr
     summary = json.loads(done.stdout)
     assert [*summary["skipped"]] == [f"{path}: episodes[0]", f"{path}: episodes[2]"]
-    assert "a point where the agent can stand: the nearest is" in done.stderr
+    assert "doors sweep: the nearest is" in done.stderr
     assert "0.50 m away" in done.stderr
     assert [one.source_id for one in dwell.episodes.read(out)] == ["val.json.gz#1"]
     done = command(*args, "--json", "--snap", "0.6")

@@ -134,6 +134,16 @@ def test_recordings_are_as_long_and_as_fast_as_labels_and_details_say(
     assert "has 0 frames of 100 ms, counted from 0; its labels name frame" in ran.stderr
 
 
+def test_samples_that_are_no_numbers_are_told_by_their_file(data: Path, command: Command) -> None:
+    path = sorted(data.glob("foa_dev/*/*.wav"))[0]
+    write_wav(path, np.ones((4, 16_000)), 16_000)
+    whole = path.read_bytes()
+    path.write_bytes(whole[:-4] + struct.pack("<f", math.nan))
+    ran = command("localize", "score", data, *BASELINE)
+    assert f"{path.name}: sample 15999 of channel 3 is nan; allowed are finite" in ran.stderr
+    assert "Warning" not in ran.stderr
+
+
 def test_labels_name_sources_and_frames_that_are_there(data: Path, command: Command) -> None:
     labels = sorted(data.glob("metadata_dev/*/*.csv"))[0]
     labels.write_text("0,3,9,0,0,100\n")
@@ -206,6 +216,32 @@ def test_a_frame_has_no_more_rows_of_a_class_than_can_be_paired(
         (tmp_path / labels.name).write_text("0,12,0,0,0,100\n")
     ran = command("localize", "score", whole, "--estimates", tmp_path)
     assert ".csv line 1: class is 12; there are 12, counted from 0" in ran.stderr
+
+
+@pytest.mark.parametrize(
+    ("row", "told"),
+    [
+        (f"{2**31},0,0,10,0", f"frame is {2**31}; allowed are whole numbers from 0 to {2**31 - 1}"),
+        (f"0,{2**31},0,10,0", f"class is {2**31}; allowed are whole numbers from 0 to {2**31 - 1}"),
+        (f"0,0,{10**12},10,0", f"source is {10**12}; allowed are whole numbers from 0 to 2147"),
+        ("0,0,-1,10,0", "source is -1; allowed are whole numbers from 0 to 2147483647"),
+        ("0,0,0,10,0,1e10", "distance 1e+10; allowed are 0 to 1e+09 cm"),
+    ],
+)
+def test_a_number_of_a_row_beyond_the_largest_is_told_with_what_is_allowed(
+    tmp_path: Path, row: str, told: str
+) -> None:
+    path = tmp_path / "x.csv"
+    path.write_text(f"{2**31 - 1},{2**31 - 1},{2**31 - 1},10,0\n{row}\n")
+    with pytest.raises(dwell.ConfigError, match=re.escape(f"x.csv line 2: {told}")):
+        read_labels(path)
+
+
+def test_what_can_be_written_can_be_read_again(tmp_path: Path) -> None:
+    most = 2**31 - 1
+    rows = [Label(most, most, most, -360.0, 90.0, 1e7)]
+    write_labels(tmp_path / "x.csv", rows)
+    assert read_labels(tmp_path / "x.csv") == rows
 
 
 @pytest.mark.parametrize("name", ["arrays", "held_out_arrays"])

@@ -257,7 +257,7 @@ def test_errors_within_a_factory_of_parts_stay_as_they_are() -> None:
             "from 0 to 4294967295",
         ),
         ({"gps": {}, "rgb": 3}, "sensors.rgb: 3: found integer `3`, expected values by name"),
-        (["gps", "rbg"], 'no sensor "rbg"; there are'),
+        (["gps", "rbg"], 'no sensor "rbg"; of the '),
         ([], "sensors is empty; expected at least one sensor, as ['gps']"),
     ],
 )

@@ -150,6 +150,55 @@ def test_columns_are_refused_before_a_picture_is_made(
         plans.houses_sheet(["builtin:studio"], columns=columns)
 
 
+def test_a_title_of_any_length_is_drawn_within_its_tile() -> None:
+    image = Image.new("RGB", (90, 60), "red")
+    titles = ["n" * 1_000_001, "m" * 100, "a\nb", "i" * 1_000_001 + " m²", ""]
+    for tile in ((120, 60), (40, 30), (8, 8)):
+        pictures = [(title, image) for title in (*titles, "plan, 12.5 m²")]
+        drawn = np.asarray(plans.sheet(pictures, columns=1, tile=tile))
+        background = drawn[0, 0]
+        # Nothing stands in the margin beside the tiles.
+        assert (drawn[:, tile[0] + 12 :] == background).all()
+    # What fits is drawn as it is: at the same place as without neighbours, to the bit.
+    short, long = (
+        plans.sheet([(title, image)], tile=(360, 60)) for title in ("kitchen", "m" * 100)
+    )
+    assert short.size == long.size
+    narrow = np.asarray(plans.sheet([("kitchen", image)], tile=(100, 60)))
+    assert np.array_equal(np.asarray(short)[70:, 10:110], narrow[70:, 10:110])
+
+
+def test_the_middle_of_words_that_are_too_wide_is_left_out() -> None:
+    def fitted(words: str, widest: float) -> str:
+        return plans._fitted(words, widest, lambda part: float(len(part)))
+
+    assert [fitted("living room", wide) for wide in (11, 10, 5, 3)] == [
+        "living room",
+        "livi...oom",
+        "l...m",
+        "...",
+    ]
+    assert fitted("", 0.0) == fitted("hall", 2.0) == ""
+    assert fitted("n" * 1_000_001, 9.0) == "nnn...nnn"
+
+
+def test_a_house_of_a_long_name_has_a_sheet_and_a_plan(
+    tmp_path: Path, monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
+) -> None:
+    from dwell import cli
+
+    monkeypatch.chdir(tmp_path)
+    house = dwell.House.open("builtin:studio").edit()
+    house.rename("n" * 1_000_001)
+    house.done().write("y.dwell", "dwell")
+    # The pictures are not what is tested.
+    picture = Image.new("RGB", (40, 30))
+    monkeypatch.setattr(plans, "dollhouse", lambda *_, **__: picture)
+    monkeypatch.setattr(plans, "room_view", lambda *_, **__: picture)
+    assert cli.main(["render", "y.dwell", "--sheet", "--out", "out"]) == 0, capsys.readouterr().err
+    assert size(Path("out/sheet.png"))[0] == 4 * 370 + 10
+
+
 @pytest.mark.long
 def test_a_sheet_says_how_far_it_is() -> None:
     from dwell import plans

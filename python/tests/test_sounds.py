@@ -60,6 +60,23 @@ def test_numbers_beyond_32_bits_are_refused(tmp_path: Path) -> None:
         read_wav(path)
 
 
+@pytest.mark.parametrize("kind", ["<f4", "<f8"])
+@pytest.mark.parametrize("value", [np.nan, np.inf, -np.inf])
+def test_samples_that_are_no_finite_numbers_are_refused(
+    tmp_path: Path, kind: str, value: float
+) -> None:
+    path = tmp_path / "a.wav"
+    width = np.dtype(kind).itemsize
+    sound = np.array([0.5, 0.0, 1.0, value], kind).tobytes()
+    layout = struct.pack("<HHIIHH", 3, 2, 16_000, 16_000 * 2 * width, 2 * width, 8 * width)
+    body = b"WAVEfmt " + struct.pack("<I", 16) + layout
+    body += b"data" + struct.pack("<I", len(sound)) + sound
+    path.write_bytes(b"RIFF" + struct.pack("<I", len(body)) + body)
+    told = rf"a\.wav: sample 1 of channel 1 is {value}; allowed are finite numbers, Pa"
+    with pytest.raises(dwell.MeasuredDataError, match=told):
+        read_wav(path)
+
+
 def test_a_snapshot_whose_sound_is_gone_is_refused(tmp_path: Path) -> None:
     write_wav(tmp_path / "a.wav", SOUND[:1], 16_000)
     world = dwell.World("builtin:studio", sound_root=tmp_path)

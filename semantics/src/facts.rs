@@ -5,6 +5,7 @@ use crate::clear_glass::CLEAR_OPACITY;
 use crate::color::{
     ColorShare, ColorVocabulary, MaterialColors, SurfacePattern, color_words, speakers_disagree,
 };
+use crate::curtain_panels::is_in_two_panels;
 use crate::english::singular_and_plural;
 use crate::form::{Description, Noun};
 use crate::geometry::triangle_area_m2;
@@ -20,6 +21,8 @@ use glam::Vec3;
 const MADE_OF_SHARE: f32 = 0.5;
 /// Height below which what files call a wardrobe is a cabinet, m: nothing hangs in it.
 const LEAST_WARDROBE_M: f32 = 1.3;
+/// Height from which shelves are a piece of furniture rather than a board, m.
+const LEAST_SHELVING_M: f32 = 0.6;
 /// Share of what is seen of a thing from which somebody may name a colour beside its main one.
 const TRACE_SHARE: f32 = 0.03;
 /// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
@@ -66,11 +69,18 @@ impl ObjectFacts {
         let object = &house.objects[id];
         let category = categories().of(&object.category);
         let kind = kind_nouns().get(object.category.fine.as_str());
+        let is_pair =
+            category.is_some_and(|row| row.name == "curtain") && is_in_two_panels(house, id);
+        let kind = kind.or_else(|| kind_nouns().get("curtain_pair").filter(|_| is_pair));
         let extents_m = own_box(house, id).size();
         let is_low = extents_m.y < LEAST_WARDROBE_M;
+        let is_low_shelf = extents_m.y < LEAST_SHELVING_M;
         let (noun, plural) = match (kind, category) {
             (None, Some(row)) if is_low && row.name == "wardrobe_cabinet" => {
                 singular_and_plural("cabinet")
+            }
+            (None, Some(row)) if !is_low_shelf && row.name == "shelving" => {
+                singular_and_plural("shelving unit")
             }
             (Some(kind), _) => (kind.singular.to_owned(), kind.plural.to_owned()),
             (None, Some(row)) => (row.singular.to_owned(), row.plural.to_owned()),

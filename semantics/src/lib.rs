@@ -7,6 +7,7 @@ pub mod check;
 mod clear_glass;
 pub mod color;
 mod csv_table;
+mod curtain_panels;
 pub mod describe;
 pub mod dialogue;
 mod doorways;

@@ -7,8 +7,10 @@ mod resample;
 mod vorbis;
 mod vorbis_headers;
 mod wav;
+mod wav_chunks;
 
 pub use resample::resample;
+pub use wav_chunks::without_other_chunks;
 
 use crate::error::AcousticsError;
 use crate::signals::Signal;

@@ -101,6 +101,38 @@ fn every_kind_of_wav_gives_its_samples_back() {
     }
 }
 
+/// As players, recorders and `libsndfile` write them: the byte of padding is not counted in a chunk's length.
+#[test]
+fn chunks_of_odd_length_before_the_samples_are_padded() {
+    let samples = tone(22_050, 700.0, 3_000);
+    let plain = wav(16, false, 1, 22_050, &samples);
+    let expected = Recording::decode("bell", &plain).unwrap();
+    // The header and the format of hound's plain layout.
+    let (head, data) = plain.split_at(36);
+    assert!(data.starts_with(b"data"));
+    let odd = [
+        &b"LIST"[..],
+        &15_u32.to_le_bytes(),
+        b"INFOISFT\x03\0\0\0abc",
+    ]
+    .concat();
+    let even = [&b"junk"[..], &2_u32.to_le_bytes(), b"ab"].concat();
+    let (format, start) = (&head[12..], &head[..12]);
+    for chunks in [
+        [start, format, &odd, b"\0", data].concat(),
+        [start, &odd, b"\0", format, &odd, b"\0", &even, data].concat(),
+        // Without the padding, which is wrong and has always been read.
+        [start, format, &odd, data].concat(),
+    ] {
+        assert_eq!(Recording::decode("bell", &chunks).unwrap(), expected);
+    }
+    // A file that ends in such a chunk is damaged.
+    for end in [&odd[..6], &odd[..12], &odd] {
+        let cut = [start, format, end].concat();
+        assert!(refusal(&cut).contains("undamaged"), "{}", refusal(&cut));
+    }
+}
+
 /// What programs write that reckon with NumPy; once an "ill-formed" file.
 #[test]
 fn doubles_give_the_samples_of_floats() {

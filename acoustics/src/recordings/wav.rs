@@ -1,9 +1,9 @@
 //! WAV, by `hound`; 64-bit float, which that does not read, by hand.
 
+use super::wav_chunks::without_other_chunks;
 use super::{MonoMix, damaged, fault};
 use crate::error::AcousticsError;
 use hound::SampleFormat::{Float, Int};
-use std::io::Cursor;
 
 /// The kinds of samples that are read.
 const ALLOWED: &str = "PCM of 8, 16, 24 and 32 bits, float of 32 and 64";
@@ -16,7 +16,8 @@ pub(super) fn decode<'a>(name: &'a str, bytes: &[u8]) -> Result<MonoMix<'a>, Aco
         hound::Error::Unsupported => fault(name, "samples", &"another kind", ALLOWED),
         error => damaged(name, &error),
     };
-    let reader = hound::WavReader::new(Cursor::new(bytes)).map_err(broken)?;
+    let reader = without_other_chunks(bytes).map_err(hound::Error::IoError);
+    let reader = reader.and_then(hound::WavReader::new).map_err(broken)?;
     let spec = reader.spec();
     let mut mix = MonoMix::new(name, spec.sample_rate, u32::from(spec.channels))?;
     match (spec.sample_format, spec.bits_per_sample) {

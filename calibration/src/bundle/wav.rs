@@ -2,6 +2,7 @@
 
 use super::limits;
 use crate::error::CalibrationError;
+use dwell_acoustics::recordings::without_other_chunks;
 use std::fs::File;
 use std::io::BufReader;
 
@@ -11,7 +12,8 @@ pub(super) fn samples(file: File, at: &str, rate_hz: u32) -> Result<Vec<f32>, Ca
         at: at.to_owned(),
         what: error.to_string(),
     };
-    let mut reader = hound::WavReader::new(BufReader::new(file)).map_err(syntax)?;
+    let reader = without_other_chunks(BufReader::new(file)).map_err(hound::Error::IoError);
+    let mut reader = reader.and_then(hound::WavReader::new).map_err(syntax)?;
     let spec = reader.spec();
     let field = |name: &str, found: u32, allowed: String| {
         Err(CalibrationError::field(at, name, found, allowed))
@@ -71,4 +73,35 @@ pub(super) fn samples(file: File, at: &str, rate_hz: u32) -> Result<Vec<f32>, Ca
         ));
     }
     Ok(samples)
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+    use std::io::{Cursor, Write};
+
+    #[test]
+    fn a_chunk_of_odd_length_before_the_samples_is_passed_over() {
+        let spec = hound::WavSpec {
+            channels: 1,
+            sample_rate: 48_000,
+            bits_per_sample: 16,
+            sample_format: hound::SampleFormat::Int,
+        };
+        let mut plain = Cursor::new(Vec::new());
+        let mut writer = hound::WavWriter::new(&mut plain, spec).unwrap();
+        for sample in [0_i16, 16_384, -8192] {
+            writer.write_sample(sample).unwrap();
+        }
+        writer.finalize().unwrap();
+        let plain = plain.into_inner();
+        // Behind the header and the format.
+        let (head, data) = plain.split_at(36);
+        let mut file = tempfile::NamedTempFile::new().unwrap();
+        for bytes in [head, b"LIST\x03\0\0\0abc\0", data] {
+            file.write_all(bytes).unwrap();
+        }
+        let file = File::open(file.path()).unwrap();
+        assert_eq!(samples(file, "ir.wav", 48_000).unwrap(), [0.0, 0.5, -0.25]);
+    }
 }

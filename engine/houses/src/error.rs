@@ -19,12 +19,14 @@ pub enum HousesError {
         allowed: String,
     },
     /// `builtin:NAME` with a name that does not exist.
-    #[error("no built-in house {name:?}; this version has {known:?}")]
+    #[error("no built-in house {name:?}; this version has {known:?}{hint}")]
     UnknownBuiltin {
         /// The name as given.
         name: String,
         /// The names that exist.
         known: Vec<String>,
+        /// How the path of this name is written, where there is one.
+        hint: String,
     },
     /// An export format that does not exist.
     #[error("form is {name:?}; allowed are {known:?}")]

@@ -103,6 +103,7 @@ fn open_builtin(name: &str) -> OpenResult {
     let house = crate::builtin::build(name).ok_or_else(|| HousesError::UnknownBuiltin {
         name: name.to_owned(),
         known: known(),
+        hint: String::new(),
     })?;
     Ok((house, LoadReport::new()))
 }

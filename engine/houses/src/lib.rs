@@ -26,6 +26,7 @@ pub mod procthor;
 mod report;
 mod robot;
 pub mod suncg;
+mod toml_text;
 pub mod urdf;
 mod warning_kind;
 mod writers;

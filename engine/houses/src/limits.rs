@@ -28,6 +28,8 @@ pub(crate) const MAX_XML_ATTRIBUTES: u64 = 128;
 pub(crate) const MAX_XML_DEPTH: usize = 200;
 /// Deepest nesting of folders that a pattern of a data set names.
 pub(crate) const MAX_PATTERN_WORDS: usize = 12;
+/// Most letters of names that are compared with the patterns of a map: some ten seconds, in which the call can be stopped.
+pub(crate) const MAX_LETTERS_COMPARED: u64 = 10_000_000_000;
 /// Largest binary buffer of glTF and of the native form, bytes.
 pub(crate) const MAX_BUFFER_BYTES: u64 = 2 << 30;
 /// Most bytes of all sound files of a house.
@@ -72,6 +74,7 @@ mod tests {
             ("MAX_XML_ATTRIBUTES", MAX_XML_ATTRIBUTES),
             ("MAX_XML_DEPTH", MAX_XML_DEPTH as u64),
             ("MAX_PATTERN_WORDS", MAX_PATTERN_WORDS as u64),
+            ("MAX_LETTERS_COMPARED", MAX_LETTERS_COMPARED),
             ("MAX_VOXEL_SIDE", u64::from(MAX_VOXEL_SIDE)),
             ("MAX_FOLDER_ENTRIES", MAX_FOLDER_ENTRIES as u64),
         ];

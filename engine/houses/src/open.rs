@@ -37,6 +37,9 @@ const PLAN: Format = Format {
 /// Opens the house that `house` names, on as many threads as the machine gives. `HOUSE?map=FILE` opens it with a map of its
 /// foreign names ([`crate::authoring::NameMapping`]).
 ///
+/// What begins with `builtin:` or `seed:` is never a path, so that it means the same in every folder: `./seed:1.obj` is the path.
+/// A path that exists is itself, also where `?map=` is in its name.
+///
 /// # Errors
 /// [`HousesError::UnknownHouse`] lists what is allowed; otherwise what the format says.
 ///
@@ -65,13 +68,14 @@ pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError
     };
     let ends = from.parse::<u64>().ok().zip(to.parse::<u64>().ok());
     let Some((from, to)) = ends.filter(|(from, to)| from < to) else {
-        return Err(HousesError::Spec {
+        return Err(name_path(house)(HousesError::Spec {
             field: "seed".to_owned(),
             found: range.to_owned(),
             possible: format!("A..B with whole numbers A < B, up to {}", u64::MAX),
-        });
+        }));
     };
-    crate::generate::spec_of(fields.strip_prefix('?').unwrap_or(fields))?;
+    crate::generate::spec_of(fields.strip_prefix('?').unwrap_or(fields))
+        .map_err(name_path(house))?;
     Ok(Some((from..to, fields)))
 }
 
@@ -80,16 +84,39 @@ pub fn seed_range(house: &str) -> Result<Option<(Range<u64>, &str)>, HousesError
 /// # Errors
 /// Those of [`open`].
 pub fn open_with(house: &str, threads: Threads) -> Result<(House, LoadReport), HousesError> {
-    let Some((foreign, map)) = house.rsplit_once("?map=") else {
-        return open_by(formats(), house, threads);
-    };
-    let _span = tracing::debug_span!("open", house).entered();
-    open_mapped(foreign, map, threads)
+    match house.rsplit_once("?map=").filter(|_| !is_path(house)) {
+        None => open_by(formats(), house, threads).map_err(name_path(house)),
+        Some((foreign, map)) => {
+            let _span = tracing::debug_span!("open", house).entered();
+            open_mapped(foreign, map, threads)
+        }
+    }
+}
+
+/// Returns whether a HOUSE string is a path that exists.
+fn is_path(house: &str) -> bool {
+    !house.starts_with("builtin:") && !house.starts_with("seed:") && Path::new(house).exists()
+}
+
+/// Adds, to the error of a HOUSE string that is never a path, how the path of that name is written, if there is one.
+fn name_path(house: &str) -> impl Fn(HousesError) -> HousesError {
+    move |mut error| {
+        if is_path(house) || !Path::new(house).exists() {
+            return error;
+        }
+        if let HousesError::Spec { possible: told, .. }
+        | HousesError::UnknownBuiltin { hint: told, .. } = &mut error
+        {
+            told.push_str("; the path of this name is ./");
+            told.push_str(house);
+        }
+        error
+    }
 }
 
 /// Opens a house with a map of its foreign names: `HOUSE?map=FILE`.
 fn open_mapped(house: &str, map: &str, threads: Threads) -> OpenResult {
-    if house.contains("?map=") {
+    if house.contains("?map=") && !is_path(house) {
         return Err(HousesError::Spec {
             field: "map".to_owned(),
             found: "two maps".to_owned(),
@@ -150,5 +177,48 @@ mod tests {
     fn a_range_opened_as_one_house_says_where_ranges_are_taken() {
         let told = open("seed:0..3").unwrap_err().to_string();
         assert!(told.contains("0..3") && told.contains("several"), "{told}");
+    }
+
+    /// A triangle as an OBJ file.
+    const OBJ: &str = "v 0 0 0\nv 1 0 0\nv 1 0 1\nf 1 2 3\n";
+
+    #[test]
+    fn a_path_that_exists_is_itself_also_with_a_map_in_its_name() {
+        let folder = tempfile::tempdir().unwrap();
+        let at = |name: &str| folder.path().join(name).to_string_lossy().into_owned();
+        for name in ["a.obj", "a?map=m.obj"] {
+            std::fs::write(at(name), OBJ).unwrap();
+        }
+        std::fs::write(at("m.toml"), "[nodes]\n\"*\" = \"chair\"\n").unwrap();
+        let map = at("m.toml");
+        let category = |house: &str| {
+            let (house, _) = open(house).unwrap();
+            house.objects.iter().next().unwrap().category.coarse.clone()
+        };
+        assert_eq!(category(&at("a?map=m.obj")), "");
+        for name in ["a.obj", "a?map=m.obj"] {
+            assert_eq!(category(&format!("{}?map={map}", at(name))), "chair");
+        }
+        let two = open(&format!("{}?map=b?map={map}", at("a.obj"))).unwrap_err();
+        assert_eq!(two.to_string(), "map: found two maps; possible: one");
+    }
+
+    #[test]
+    fn what_is_never_a_path_says_how_the_path_of_its_name_is_written() {
+        for begin in ["seed:", "seed:0..", "builtin:"] {
+            let mut file = tempfile::Builder::new();
+            let file = file.prefix(begin).suffix(".obj").tempfile_in(".").unwrap();
+            std::fs::write(file.path(), OBJ).unwrap();
+            let house = file.path().file_name().unwrap().to_str().unwrap();
+            let hint = format!("; the path of this name is ./{house}");
+            let told = open(house).unwrap_err().to_string();
+            assert!(told.ends_with(&hint), "{told}");
+            if let Err(error) = seed_range(house) {
+                assert!(error.to_string().ends_with(&hint), "{error}");
+            }
+            assert_eq!(open(&format!("./{house}")).unwrap().0.objects.len(), 1);
+        }
+        let told = open("seed:none.obj").unwrap_err().to_string();
+        assert!(!told.contains("path"), "{told}");
     }
 }

@@ -142,6 +142,34 @@ impl LoadReport {
         self.not_kept += other.not_kept;
     }
 
+    /// Appends the warnings of `other` by their places: an equal one at the same place is counted, any other stands for itself. For
+    /// houses that are edited again and again, where each thing is named, and a thing that is moved often takes no more room.
+    pub fn append_by_place(&mut self, other: Self) {
+        let known: BTreeMap<(&FileLocation, &WarningKind), usize> = self
+            .warnings
+            .iter()
+            .enumerate()
+            .map(|(k, warning)| ((&warning.at, &warning.kind), k))
+            .collect();
+        let places: Vec<Option<usize>> = other
+            .warnings
+            .iter()
+            .map(|warning| known.get(&(&warning.at, &warning.kind)).copied())
+            .collect();
+        for (warning, place) in other.warnings.into_iter().zip(places) {
+            if let Some(k) = place {
+                self.warnings[k].count += warning.count;
+            } else if self.warnings.len() < MAX_WARNINGS {
+                let key = (warning.at.file.clone(), warning.kind.clone());
+                self.index.entry(key).or_insert(self.warnings.len());
+                self.warnings.push(warning);
+            } else {
+                self.not_kept += warning.count;
+            }
+        }
+        self.not_kept += other.not_kept;
+    }
+
     /// Removes the warnings for which `keep` does not hold.
     pub(crate) fn retain(&mut self, keep: impl Fn(&Warning) -> bool) {
         let kept = std::mem::take(self);
@@ -219,6 +247,38 @@ mod tests {
             "room/a/fr_0rm_0w.obj:7: vertex coordinates that are not finite numbers; set to 0 (3 times)\n\
              other.obj: vertex coordinates that are not finite numbers; set to 0\n"
         );
+    }
+
+    /// Also after a way through JSON, as Python keeps it.
+    #[test]
+    fn a_report_of_many_edits_names_each_thing_once() {
+        let of = |name: &str, kind: WarningKind| {
+            let mut report = LoadReport::new();
+            report.warn(FileLocation::file("edits").field(name), kind);
+            report
+        };
+        let mut report = LoadReport::new();
+        for _ in 0..500 {
+            report.append_by_place(of("chair", WarningKind::InWall));
+            report.append_by_place(of("table", WarningKind::InWall));
+            report.append_by_place(of("table", WarningKind::OutsideRooms));
+            let text = serde_json::to_string(&report).unwrap();
+            report = serde_json::from_str(&text).unwrap();
+        }
+        let rows = report.warnings().iter();
+        let rows: Vec<_> = rows.map(|w| (w.at.field.as_deref(), w.count)).collect();
+        assert_eq!(
+            rows,
+            [
+                (Some("chair"), 500),
+                (Some("table"), 500),
+                (Some("table"), 500)
+            ]
+        );
+        for i in 0..=MAX_WARNINGS {
+            report.append_by_place(of(&i.to_string(), WarningKind::InWall));
+        }
+        assert_eq!((report.len(), report.dropped_count()), (MAX_WARNINGS, 4));
     }
 
     #[test]

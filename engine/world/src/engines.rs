@@ -12,6 +12,7 @@ use dwell_acoustics::{AcousticConfig, AcousticScene, Head, HeadId};
 use dwell_physics::PhysicsModel;
 use dwell_render::{BackEnd, CpuRenderer, Renderer};
 use dwell_scene::navigation::{DoorPolicy, NavConfig, NavGrid};
+use dwell_scene::parallel::apart_from_pool;
 use dwell_scene::{House, SoundFileId, State};
 use dwell_semantics::Semantics;
 use glam::Vec3;
@@ -86,7 +87,8 @@ impl Engines {
             return Ok(tables);
         }
         texture_memory::check(&self.house)?;
-        let tables = Arc::new(CpuRenderer::try_new(&self.house)?);
+        let tables = apart_from_pool(|| CpuRenderer::try_new(&self.house))?;
+        let tables = Arc::new(tables);
         Ok(self.renderer.get_or_init(|| tables))
     }
 
@@ -100,23 +102,22 @@ impl Engines {
         if let Some(renderer) = made.get(back_end) {
             return Ok(renderer.clone());
         }
-        let renderer = Arc::new(Renderer::new(
-            back_end,
-            self.shared_cpu_renderer()?.clone(),
-        )?);
+        let tables = self.shared_cpu_renderer()?.clone();
+        let renderer = Arc::new(apart_from_pool(|| Renderer::new(back_end, tables))?);
         made.insert(back_end.clone(), renderer.clone());
         Ok(renderer)
     }
 
     /// Returns the semantics of the house.
     pub fn semantics(&self) -> &Semantics {
-        self.semantics.get_or_init(|| Semantics::new(&self.house))
+        self.semantics
+            .get_or_init(|| apart_from_pool(|| Semantics::new(&self.house)))
     }
 
     /// The shapes of the house's bodies.
     pub fn physics_model(&self) -> &Arc<PhysicsModel> {
         self.physics
-            .get_or_init(|| Arc::new(PhysicsModel::new(self.house.clone())))
+            .get_or_init(|| Arc::new(apart_from_pool(|| PhysicsModel::new(self.house.clone()))))
     }
 
     /// Returns the initial state of worlds of a config; worlds that run side by side share it.
@@ -129,7 +130,8 @@ impl Engines {
         if let Some(start) = shared.and_then(|(_, start)| start.upgrade()) {
             return Ok(start);
         }
-        let start = Arc::new(InitialWorld::new(self.physics_model(), config)?);
+        let start = apart_from_pool(|| InitialWorld::new(self.physics_model(), config))?;
+        let start = Arc::new(start);
         *latest = Some((config.clone(), Arc::downgrade(&start)));
         Ok(start)
     }
@@ -154,7 +156,8 @@ impl Engines {
                 allowed,
             });
         };
-        let scene = AcousticScene::new(self.house.clone(), AcousticConfig { rate_hz, ..config })?;
+        let config = AcousticConfig { rate_hz, ..config };
+        let scene = apart_from_pool(|| AcousticScene::new(self.house.clone(), config))?;
         Ok(scenes
             .entry((preset.to_owned(), rate_hz))
             .or_insert(scene)
@@ -193,7 +196,7 @@ impl Engines {
     /// The points from which the house's own sounds are heard, in the frames of their parts, m. Shape (emitter,).
     pub(crate) fn emission_points(&self) -> &[Vec3] {
         self.emitter_places
-            .get_or_init(|| emission_points(&self.house))
+            .get_or_init(|| apart_from_pool(|| emission_points(&self.house)))
     }
 
     /// A sound file of the house at a sample rate; decoded once.

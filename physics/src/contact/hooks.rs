@@ -80,6 +80,17 @@ impl ContactProperties<'_> {
     }
 }
 
+/// The callbacks while bodies are inserted in portions: their pairs are listed, and have contacts only once all bodies and joints
+/// are there.
+pub(crate) struct PairListingHooks;
+
+impl PhysicsHooks for PairListingHooks {
+    fn filter_contact_pair(&self, _: &PairFilterContext) -> Option<SolverFlags> {
+        interrupt::unwind_if_cancelled();
+        None
+    }
+}
+
 /// The callbacks of one step.
 pub(crate) struct ContactHooks<'a> {
     pub(crate) entries: &'a [ColliderMetadata],

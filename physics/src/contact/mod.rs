@@ -24,7 +24,7 @@ pub(crate) use contact_pairs::contacts_within;
 pub(crate) use contact_tracker::ContactTracker;
 pub(crate) use events::merge_excess;
 pub use events::{ContactEvent, ContactKind, ContactPhase, ExcessEventTotals};
-pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties};
+pub(crate) use hooks::{CollisionExclusions, ContactHooks, ContactProperties, PairListingHooks};
 pub(crate) use restitution::{RestitutionContext, RestitutionResult};
 pub(crate) use scope::ContactScope;
 pub(crate) use substances::ContactTable;

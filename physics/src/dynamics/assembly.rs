@@ -2,7 +2,7 @@
 
 use crate::body::{self, BodyHandle, BodyStatus, body_type};
 use crate::config::ResolvedConfig;
-use crate::contact::{ColliderMetadata, CollisionExclusions, ContactHooks, ContactProperties};
+use crate::contact::{ColliderMetadata, ContactProperties, PairListingHooks};
 use crate::engine::{ContactCompliance, RapierWorld};
 use crate::inertia::{self, BodyInertia};
 use crate::laws::LawSet;
@@ -77,13 +77,7 @@ pub(crate) fn assemble(
     for (index, plan) in model.bodies.iter().enumerate() {
         interrupt::unwind_if_cancelled();
         if pauses.next_if_eq(&&index).is_some() {
-            engine.flush(&ContactHooks {
-                entries: &entries,
-                properties: values,
-                excluded: &CollisionExclusions::default(),
-                friction_storage: engine.friction_storage(),
-                dt_s: 0.0,
-            });
+            engine.flush(&PairListingHooks);
         }
         let (world_from_body, hold) = places(index);
         let place = BodyPlacement {

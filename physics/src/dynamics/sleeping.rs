@@ -3,11 +3,14 @@
 use super::Dynamics;
 use crate::body::{BodyHandle, BodyStatus};
 use crate::contact::contacts_within;
-use dwell_scene::{Contact, State, SupportDirection};
+use dwell_scene::{Contact, State, SupportDirection, interrupt};
 use rapier3d::dynamics::RigidBodyHandle;
 
 /// Physics steps between transfers to the cache: a quarter of a second at the default rate.
 const CACHING_PERIOD_TICKS: u64 = 32;
+/// Work of rapier's list of pairs in one flush while pairs are dropped, steps: a tenth of a second, in which it asks nobody.
+const STEPS_PER_FLUSH: u64 = 50_000_000;
+
 impl Dynamics {
     /// Periodically caches bodies that have fallen asleep. `tick_before`: the tick at which the control step began;
     /// `is_handled`: whether a hand holds or has just released a body.
@@ -39,8 +42,11 @@ impl Dynamics {
     fn forget_pairs(&mut self, bodies: &[RigidBodyHandle]) {
         // They must first be known as fixed, or what they touch would wake when the pairs go.
         self.flush();
-        self.engine.move_broad_phase_proxies(bodies, true);
-        self.flush();
+        for portion in portions(bodies, |body| self.engine.pair_count(body)) {
+            interrupt::unwind_if_cancelled();
+            self.engine.move_broad_phase_proxies(portion, true);
+            self.flush();
+        }
         self.engine.move_broad_phase_proxies(bodies, false);
         self.flush();
         self.engine.shrink_pair_storage();
@@ -92,5 +98,47 @@ impl Dynamics {
         let rigid = self.engine.bodies.get(self.bodies[index].handle);
         self.statuses[index] == BodyStatus::Free
             && rigid.is_some_and(|rigid| rigid.is_dynamic() && rigid.is_sleeping())
+    }
+}
+
+/// Returns the bodies in portions whose pairs are dropped in one flush each: rapier looks through the pairs of a body for each that
+/// it drops.
+fn portions(
+    bodies: &[RigidBodyHandle],
+    pair_count: impl Fn(RigidBodyHandle) -> usize,
+) -> Vec<&[RigidBodyHandle]> {
+    let mut portions = Vec::new();
+    let (mut start, mut since) = (0, 0);
+    for (k, body) in bodies.iter().enumerate() {
+        let steps = (pair_count(*body) as u64).pow(2);
+        if since + steps > STEPS_PER_FLUSH && k > start {
+            portions.push(&bodies[start..k]);
+            (start, since) = (k, 0);
+        }
+        since += steps;
+    }
+    portions.push(&bodies[start..]);
+    portions
+}
+
+#[cfg(test)]
+mod tests {
+    use super::*;
+
+    #[test]
+    fn pairs_are_dropped_in_portions_of_bounded_work() {
+        let bodies: Vec<RigidBodyHandle> = (0..770)
+            .map(|k| RigidBodyHandle::from_raw_parts(k, 0))
+            .collect();
+        // Some pairs each, as in a house that people live in: all at once.
+        assert_eq!(portions(&bodies, |_| 60), [&bodies[..]]);
+        let of_heap = portions(&bodies, |_| 770);
+        assert_eq!(of_heap.concat(), bodies);
+        assert!(
+            of_heap.iter().all(|portion| portion.len() <= 84),
+            "{of_heap:?}"
+        );
+        assert!(of_heap.len() < 12);
+        assert_eq!(portions(&bodies[..2], |_| 100_000).len(), 2);
     }
 }

@@ -317,6 +317,12 @@ impl RapierWorld {
         others
     }
 
+    /// Returns the number of pairs of a body's colliders, touching or near.
+    pub(crate) fn pair_count(&self, body: RigidBodyHandle) -> usize {
+        let rigid = self.bodies.get(body);
+        rigid.map_or(0, |rigid| self.contact_pairs_of(rigid).count())
+    }
+
     /// Releases the memory of pairs that are gone, which rapier keeps for the next ones.
     pub(crate) fn shrink_pair_storage(&mut self) {
         let bytes = postcard::to_stdvec(&self.narrow_phase)

@@ -7,9 +7,10 @@ import contextlib
 import errno
 import importlib
 import os
+import re
 import sys
 from collections.abc import Sequence
-from typing import NoReturn
+from typing import Any, NoReturn
 
 from dwell.messages import with_short_words
 
@@ -40,8 +41,22 @@ COMMANDS = {
 _EDQUOT = getattr(errno, "EDQUOT", errno.ENOSPC)
 
 
+#: Words that are values, though they begin as options do: -10, -.5, -1e3, -inf, and points such as
+#: -2,1,3. What more they may be, whoever reads them says.
+_NEGATIVE = re.compile(r"-(?:[0-9.]|(?:inf|infinity|nan)(?:,|$))", re.IGNORECASE)
+
+
 class _Parser(argparse.ArgumentParser):
-    """A parser, also of the commands below, whose errors quote the beginning of long words."""
+    """A parser, also of the commands below: any negative number is a value.
+
+    Its errors quote the beginning of long words.
+    """
+
+    def __init__(self, *args: Any, **kwargs: Any) -> None:  # noqa: ANN401 - of argparse
+        """Makes a parser as argparse does."""
+        super().__init__(*args, **kwargs)
+        # That of argparse knows neither exponents nor infinity, before Python 3.14.
+        self._negative_number_matcher = _NEGATIVE
 
     def error(self, message: str) -> NoReturn:
         """Says what is wrong with the arguments, and leaves."""
@@ -107,10 +122,10 @@ def _printed(arguments: Sequence[str] | None) -> int:
 
 def _run(arguments: Sequence[str] | None) -> int:
     from dwell import DwellError, __version__
-    from dwell.cli.common import join_negative_points, sentence
+    from dwell.cli.common import sentence
     from dwell.plugin_parts import refusing_exit
 
-    arguments = join_negative_points(sys.argv[1:] if arguments is None else arguments)
+    arguments = sys.argv[1:] if arguments is None else arguments
     top = parser(next((word for word in arguments if not word.startswith("-")), None))
     try:
         args = top.parse_args(arguments)

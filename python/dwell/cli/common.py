@@ -187,18 +187,6 @@ def back_end(args: argparse.Namespace) -> str:
     return f"gpu+{args.path}{colon}{name}"
 
 
-def join_negative_points(arguments: Sequence[str]) -> list[str]:
-    """``--mic -2,1,3`` as ``--mic=-2,1,3``: to argparse what begins with a dash is an option."""
-    joined: list[str] = []
-    for argument in arguments:
-        option = joined[-1] if joined else ""
-        if re.match(r"-[0-9.][^,]*,", argument) and re.fullmatch(r"--[a-z-]+", option):
-            joined[-1] = f"{option}={argument}"
-        else:
-            joined.append(argument)
-    return joined
-
-
 def _as_json(error: UnicodeError) -> tuple[str, int]:
     """Characters that an encoding lacks, as JSON escapes them."""
     if not isinstance(error, UnicodeEncodeError):

@@ -103,6 +103,10 @@ class EnvPool:
         _, house, seed = wanted
         return self.make([(house, seed)], threads=1)[0]
 
+    def house_behind(self, wanted: tuple[int, int, int]) -> str:
+        """The name of the house of what :meth:`make_behind` makes."""
+        return self.shelf.names[wanted[1]]
+
 
 def add_heads(house: House, heads: Sequence[Head]) -> None:
     """Lets agents of worlds over a house wear heads."""

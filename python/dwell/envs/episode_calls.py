@@ -65,3 +65,8 @@ def another_call(call: str) -> str:
         f"another call ({call}) of this environment is running, in another thread or further up in "
         "this one; an environment does one call at a time"
     )
+
+
+def closed_together() -> UsageError:
+    """Why a call of environments that step together is refused after they were closed."""
+    return UsageError("these environments are closed; make new ones")

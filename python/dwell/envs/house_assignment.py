@@ -2,10 +2,11 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 
 from dwell.envs.config import CACHED_HOUSES
 from dwell.envs.env_pool import EnvPool, PreparedEnv
+from dwell.envs.episode_calls import closed_together
 from dwell.envs.native_batch import NativeBatch
 from dwell.envs.prefetch import Prefetcher
 
@@ -19,7 +20,8 @@ class HouseAssignment:
         self._stock = stock
         self._names = stock.shelf.names
         self._houses = [0] * runner.count
-        self._ahead = Prefetcher(stock.make_behind, load_ahead if len(self._names) > 1 else 0)
+        most = load_ahead if len(self._names) > 1 else 0
+        self._ahead = Prefetcher(stock.make_behind, most, stock.house_behind)
         #: What the next episodes want that are in another house (environment, house, seed), those
         #: first whose turn comes first where all episodes are equally long.
         self._next: dict[int, tuple[int, int, int]] = {}
@@ -41,6 +43,9 @@ class HouseAssignment:
 
         Returns:
             Those that are in another house now. The engine has begun their episodes, of a seed.
+
+        Raises:
+            UsageError: The environments are closed, by another thread meanwhile.
         """
         away = {k: one for k, one in episodes.items() if self._names[one[0]] != self.name(k)}
         ready = {}
@@ -54,9 +59,16 @@ class HouseAssignment:
         for some in (
             missing[at : at + CACHED_HOUSES] for at in range(0, len(missing), CACHED_HOUSES)
         ):
-            for k, spare in zip(some, self._stock.make([away[k] for k in some]), strict=True):
+            for k, spare in zip(some, self._made_now([away[k] for k in some]), strict=True):
                 self._put(k, away[k][0], spare)
         return set(away)
+
+    def _made_now(self, episodes: Sequence[tuple[int, int | None]]) -> list[PreparedEnv]:
+        # A house is opened and prepared by one thread at a time: nothing of it is made twice.
+        with self._ahead.reserved({self._names[house] for house, _ in episodes}):
+            if self._ahead.closed:
+                raise closed_together()
+            return self._stock.make(episodes)
 
     def _put(self, env: int, house: int, spare: PreparedEnv) -> None:
         self._runner.move(env, spare)

@@ -361,8 +361,9 @@ class DwellParallelEnv(EpisodeCalls, CurrentStateApi, ParallelEnv, EzPickle):  #
 
     def close(self) -> None:
         """Closes the worlds; may be called again. After it everything else is refused."""
-        self._runner_of.cache_clear()
+        # First: a call of another thread that runs would make the worlds anew.
         self._closed = True
+        self._runner_of.cache_clear()
 
     def expert_actions(self) -> dict[str, Any]:
         """What the experts of the agents of ``agents`` would do now, by the agents' names.

@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any, NoReturn
 
@@ -23,7 +22,6 @@ from dwell.envs.agent_state import agent_state_rows, state_space
 from dwell.envs.config import CACHED_HOUSES, Houses, arguments_of, kept_houses
 from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
-from dwell.envs.episode_calls import another_call
 from dwell.envs.episode_shelf import shelf_of
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
@@ -32,6 +30,7 @@ from dwell.envs.python_tasks import NativeSensors
 from dwell.envs.saved_world import SavedWorld
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.step_recorder import AgentRecorder
+from dwell.envs.vector_calls import VectorCalls
 from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
 from dwell.world_settings import Laws, Randomize
@@ -40,7 +39,7 @@ from dwell.world_settings import Laws, Randomize
 ByAgent = dict[str, dict[str, Any]]
 
 
-class DwellParallelVectorEnv(EzPickle):
+class DwellParallelVectorEnv(VectorCalls, EzPickle):
     """Houses in which several agents act, as :class:`dwell.pettingzoo.DwellParallelEnv`.
 
     Everything comes by the agents' names, with the environments as the first axis; the episodes are
@@ -141,11 +140,12 @@ class DwellParallelVectorEnv(EzPickle):
         self._shelf = shelf = shelf_of(given["houses"], None)
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         with setup.built(shelf[0]):
-            self._runner = runner = NativeBatch(
+            runner = NativeBatch(
                 [shelf[0]] * count, setup.config, threads, overlap=overlap, heads=setup.heads
             )
         pool = EnvPool(shelf, setup.config, setup.heads, threads)
-        self._places = HouseAssignment(runner, pool, integer_in_range("load_ahead", load_ahead))
+        ahead = integer_in_range("load_ahead", load_ahead)
+        self._opened = runner, HouseAssignment(runner, pool, ahead)
         self._forms = AgentForms(
             setup.config, runner, roster, action_mask=action_mask, shared_reward=shared_reward
         )
@@ -168,23 +168,8 @@ class DwellParallelVectorEnv(EzPickle):
         self._over: NDArray[np.bool_] = np.ones(count, np.bool_)
         self._distances = np.full((count, everybody), np.nan)
         self._stopped = np.ones(count, np.bool_)
-        self._call: str | None = None
-        self._closed = False
         #: Who writes down what is played.
         self._recorders: list[AgentRecorder] = []
-
-    @contextlib.contextmanager
-    def _calling(self, call: str) -> Iterator[None]:
-        """Other calls are refused until ``call`` has come to its end."""
-        if self._closed:
-            raise UsageError("these environments are closed; make new ones")
-        if self._call is not None:
-            raise UsageError(f"{call}: {another_call(self._call)}")
-        self._call = call
-        try:
-            yield
-        finally:
-            self._call = None
 
     def _begun(self, call: str) -> _native.Batch:
         """The engine's environments, in all of which episodes have begun.
@@ -473,7 +458,4 @@ class DwellParallelVectorEnv(EzPickle):
 
     def close(self) -> None:
         """Closes the worlds; after it everything but ``close`` is refused."""
-        if not self._closed:
-            self._closed = True
-            self._places.close()
-            del self._places, self._runner
+        self._drop()

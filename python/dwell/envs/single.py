@@ -350,8 +350,9 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
 
     def close(self) -> None:
         """Closes the worlds; may be called again. After it everything else is refused."""
-        self._runner_of.cache_clear()
+        # First: a call of another thread that runs would make the worlds anew.
         self._closed = True
+        self._runner_of.cache_clear()
 
     def expert_action(self) -> Any:  # noqa: ANN401 - of the action space
         """The action of the task's scripted expert now, an element of the action space.

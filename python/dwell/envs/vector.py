@@ -2,8 +2,7 @@
 
 from __future__ import annotations
 
-import contextlib
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from copy import deepcopy
 from typing import Any, NoReturn, cast
 
@@ -36,7 +35,6 @@ from dwell.envs.config import (
 )
 from dwell.envs.current_state import forked
 from dwell.envs.env_pool import EnvPool
-from dwell.envs.episode_calls import another_call
 from dwell.envs.episode_shelf import EpisodeIndex, settings_as_stated, shelf_of
 from dwell.envs.house_assignment import HouseAssignment
 from dwell.envs.info_keys import INFO_KEYS, step_infos
@@ -52,6 +50,7 @@ from dwell.envs.single import (
 )
 from dwell.envs.snapshots import EnvSnapshot
 from dwell.envs.step_recorder import Recorder
+from dwell.envs.vector_calls import VectorCalls
 from dwell.envs.vector_reset import VectorReset
 from dwell.world import World
 from dwell.world_settings import Laws, Randomize, with_head
@@ -65,7 +64,7 @@ def _autoreset_mode(mode: object) -> AutoresetMode:
         raise ConfigError(f"autoreset_mode is {quoted(mode)}; allowed are {allowed}") from None
 
 
-class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
+class DwellVectorEnv(VectorCalls, VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
     """``num_envs`` environments stepped together, rendered in one submission.
 
     Seeded with ``s``, environment k plays to the bit the episodes that a :class:`DwellEnv` with the
@@ -204,13 +203,13 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         threads = None if threads is None else integer_in_range("threads", threads, low=1)
         self._shelf = shelf
         self._config, self._custom, self._heads = config, custom, heads
-        self._playing = NativeBatch(
+        runner = NativeBatch(
             [shelf[0]] * num_envs, config, threads, custom=custom, overlap=overlap, heads=heads
         )
-        self._places = HouseAssignment(
-            self._playing, EnvPool(shelf, config, heads, threads), load_ahead
-        )
-        rate_hz = steps_a_second(self._playing.batch)
+        pool = EnvPool(shelf, config, heads, threads)
+        self._opened = runner, HouseAssignment(runner, pool, load_ahead)
+        batch = runner.batch
+        rate_hz = steps_a_second(batch)
         own = {"autoreset_mode": self.autoreset_mode, "render_fps": rate_hz}
         self.metadata = {**self.metadata, **own}
         self._streams: list[np.random.Generator | None] = [None] * num_envs
@@ -223,23 +222,15 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         self._recorders: list[Recorder] = []
         #: Whose latest reset, restoring or step did not come to its end.
         self._stopped = np.zeros(num_envs, np.bool_)
-        #: The call that plays episodes at this moment.
-        self._call: str | None = None
-        batch = self._runner.batch
         self._actions = action_form(config, batch.answer_fields(), asks=batch.takes_questions())
         self._masks = masked_form(action_mask, self._actions)
         #: Keys of a step's answer that become infos.
-        self._info_keys = (*INFO_KEYS, *self._runner.measures)
-        refuse_blind(self._runner.space)
-        self.single_observation_space = self._runner.space
+        self._info_keys = (*INFO_KEYS, *runner.measures)
+        refuse_blind(runner.space)
+        self.single_observation_space = runner.space
         self.single_action_space = self._actions.space
         self.observation_space = batch_space(self.single_observation_space, num_envs)
         self.action_space = batch_space(self.single_action_space, num_envs)
-
-    @property
-    def _runner(self) -> NativeBatch:
-        self._refuse_closed()
-        return self._playing
 
     def _observation(self) -> dict[str, Any]:
         now = self._runner.observation()
@@ -545,23 +536,6 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
         """Other environments at the same moments of their episodes, which all have begun."""
         return cast("DwellVectorEnv", forked(self))
 
-    @contextlib.contextmanager
-    def _calling(self, call: str) -> Iterator[None]:
-        """Other calls are refused until ``call`` has come to its end."""
-        self._call = call
-        try:
-            yield
-        finally:
-            self._call = None
-
-    def _refuse_call(self, call: str) -> None:
-        if self._call is not None:
-            raise UsageError(f"{call}: {another_call(self._call)}")
-
-    def _refuse_closed(self) -> None:
-        if self.closed:
-            raise UsageError("these environments are closed; make new ones")
-
     def expert_actions(self) -> Any:  # noqa: ANN401 - of the action space
         """The actions of the task's scripted expert now, an element of the action space."""
         return self._runner.expert(self._actions)
@@ -580,7 +554,4 @@ class DwellVectorEnv(VectorEnv[dict[str, Any], Any, NDArray[Any]], EzPickle):
 
     def close_extras(self, **kwargs: Any) -> None:  # noqa: ANN401 - gymnasium's signature
         """Closes the worlds; after it everything but ``close`` is refused."""
-        # Not there where making these environments failed.
-        if places := getattr(self, "_places", None):
-            places.close()
-            del self._places, self._playing
+        self._drop()

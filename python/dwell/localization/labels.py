@@ -19,6 +19,10 @@ from dwell.files import atomic_write, read
 FRAME_S = 0.1
 #: Rows of a class in a frame: they are paired, in a time that grows with the third power.
 MOST_AT_ONCE = 100
+#: Frames, classes and sources have 31 bits.
+_MAX_NUMBER = 2**31 - 1
+#: Farther than any room is long, m.
+_MAX_DISTANCE_M = 1e7
 #: More than hours of labels have.
 _MAX_BYTES = 256 * 2**20
 _EXPECTED = "frame, class, source, azimuth, elevation and, if known, distance"
@@ -73,11 +77,11 @@ def checked_labels(name: str, labels: object) -> Iterator[Label]:
         if not isinstance(row, Label):
             raise ConfigError(f"{name}[{k}] is {quoted(row)}; expected a Label")
         for field in ("frame", "class_index", "source"):
-            integer_in_range(f"{name}[{k}].{field}", getattr(row, field), high=2**31 - 1)
+            integer_in_range(f"{name}[{k}].{field}", getattr(row, field), high=_MAX_NUMBER)
         number_in_range(f"{name}[{k}].azimuth_deg", row.azimuth_deg, -360.0, 360.0, "degrees")
         number_in_range(f"{name}[{k}].elevation_deg", row.elevation_deg, -90.0, 90.0, "degrees")
         if row.distance_m is not None:
-            number_in_range(f"{name}[{k}].distance_m", row.distance_m, 0.0, 1e7, "m")
+            number_in_range(f"{name}[{k}].distance_m", row.distance_m, 0.0, _MAX_DISTANCE_M, "m")
         yield row
 
 
@@ -166,15 +170,16 @@ def _label(at: str, line: str) -> Label:
     except ValueError:
         raise ConfigError(f"{at}: found {line!r:.80}; expected numbers: {_EXPECTED}") from None
     azimuth, elevation, *distance = numbers
-    if min(frame, class_index, source) < 0 or max(frame, class_index, source) >= 2**31:
-        raise ConfigError(f"{at}: frame, class and source are whole numbers from 0")
+    for what, found in (("frame", frame), ("class", class_index), ("source", source)):
+        integer_in_range(f"{at}: {what}", found, high=_MAX_NUMBER)
     # NaN is in no range.
     if not (abs(azimuth) <= 360.0 and abs(elevation) <= 90.0):
         raise ConfigError(
             f"{at}: azimuth {azimuth:g}, elevation {elevation:g}; allowed are -360 to 360 and -90 "
             "to 90 degrees"
         )
-    if distance and not 0.0 <= distance[0] < 1e9:
-        raise ConfigError(f"{at}: distance {distance[0]:g}; allowed are cm from 0")
+    if distance and not 0.0 <= distance[0] <= 100.0 * _MAX_DISTANCE_M:
+        allowed = f"0 to {100.0 * _MAX_DISTANCE_M:g} cm"
+        raise ConfigError(f"{at}: distance {distance[0]:g}; allowed are {allowed}")
     metres = distance[0] / 100.0 if distance else None
     return Label(frame, class_index, source, azimuth, elevation, metres)

@@ -9,7 +9,7 @@ use dwell_scene::{MaterialId, ObjectId, RoomId, StructureKind};
 /// Rays from which on colours are held against what is seen: of a speck anything may be so.
 const LEAST_RAYS: f32 = 6.0;
 /// Share of what is seen from which one colour is told of it alone.
-const LEAST_ONLY_COLOR: f32 = 0.6;
+const LEAST_ONLY_COLOR: f32 = 0.75;
 
 /// Returns whether a thing has the colours by which it is told, as far as it is seen: a cooker of white sheet may show its black glass
 /// alone.

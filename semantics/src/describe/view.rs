@@ -272,6 +272,9 @@ impl ViewTeller<'_, '_> {
                 && !objects.contains(object)
                 && self.holds("visible", **object)
                 && in_place(**object)
+                && objects
+                    .first()
+                    .is_some_and(|one| self.seen_in(*one) == self.seen_in(**object))
                 && told.contains(&look(**object))
         });
         let counted = counted.map(|(object, _)| *object);

@@ -16,9 +16,10 @@ use std::rc::Rc;
 /// Relations to landmarks, the most informative first.
 pub(super) const TELLING: [&str; 3] = ["in", "on", "next_to"];
 /// Nouns of things that readers also call by another, and whether such things have their own colour: flowers stand in vases of any.
-pub(super) const LOOK_ALIKES: [(&str, &str, bool); 7] = [
+pub(super) const LOOK_ALIKES: [(&str, &str, bool); 8] = [
     ("book", "row of books", true),
     ("vase", "bunch of flowers", false),
+    ("towel", "towel rail", false),
     ("kitchen unit", "wall cabinet", true),
     ("kitchen unit", "kitchen cabinet", true),
     ("kitchen cabinet", "wall cabinet", true),
@@ -26,7 +27,7 @@ pub(super) const LOOK_ALIKES: [(&str, &str, bool); 7] = [
     ("wall cabinet", "kitchen cabinet", true),
 ];
 /// Distance up to which readers take a thing for one beside another, m: the relation ends at 0.5 m.
-const BESIDE_TO_READERS_M: f32 = 0.8;
+const BESIDE_TO_READERS_M: f32 = 1.2;
 /// Things between checks for cancellation.
 const THINGS_PER_CHECK: usize = 64;
 

@@ -19,6 +19,7 @@ mod free_place;
 mod hinge;
 mod mesh_file;
 mod name_mapping;
+mod name_patterns;
 mod object_index;
 mod open;
 mod overlap_check;

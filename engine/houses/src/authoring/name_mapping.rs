@@ -5,6 +5,7 @@ use std::fmt::{self, Write as _};
 use std::path::Path;
 use std::sync::Arc;
 
+use dwell_scene::interrupt;
 use dwell_scene::{House, HouseData, Mobility, ObjectId, Structure, StructureKind};
 use serde::de::value::MapAccessDeserializer;
 use serde::de::{MapAccess, Visitor};
@@ -13,13 +14,15 @@ use serde::{Deserialize, Deserializer};
 use super::edit_errors::{invalid_field, prefix_field};
 use super::edits::{ObjectAttributes, SurfaceStyle};
 use super::hinge::{NodeHinge, attach_hinge};
+use super::name_patterns::{ComparisonWork, NamePatterns};
 use super::unmapped::UnmappedNames;
 use super::{describe, place, remove_objects, surfaces};
 use crate::data_root::UserFile;
 use crate::error::HousesError;
-use crate::import::{category, room_kind, room_over_floors};
+use crate::import::{UniqueNames, category, room_kind, room_over_floors};
 use crate::limits::MAX_TEXT_BYTES;
 use crate::report::{FileLocation, LoadReport};
+use crate::toml_text;
 use crate::warning_kind::WarningKind;
 
 /// Largest number of patterns, and of letters of one.
@@ -132,10 +135,7 @@ impl NameMapping {
     /// # Errors
     /// [`HousesError::Syntax`] for what is no such TOML, [`HousesError::TooLarge`].
     pub fn parse(text: &str, at: &FileLocation) -> Result<Self, HousesError> {
-        let map: Self = toml::from_str(text).map_err(|error| HousesError::Syntax {
-            at: at.clone(),
-            message: crate::plain_parse_error(&error),
-        })?;
+        let map: Self = toml_text::from_str(text, at)?;
         let count = map.materials.len() + map.nodes.len() + map.rooms.len();
         let too_large = |what, found: usize, allowed: usize| HousesError::TooLarge {
             at: at.clone(),
@@ -213,47 +213,74 @@ impl NameMapping {
     /// [`HousesError::Spec`] names the pattern and the field, what was found and what is possible; [`HousesError::Scene`].
     pub fn apply(&self, house: &House, report: &mut LoadReport) -> Result<House, HousesError> {
         let mut data = house.data().clone();
-        self.apply_materials(&mut data)?;
-        self.apply_nodes(&mut data, report)?;
+        let mut work = ComparisonWork::default();
+        let patterns = MapPatterns {
+            materials: NamePatterns::new(&self.materials),
+            nodes: NamePatterns::new(&self.nodes),
+            rooms: NamePatterns::new(&self.rooms),
+        };
+        patterns.apply_materials(&mut data, &mut work)?;
+        patterns.apply_nodes(&mut data, report, &mut work)?;
         for room in &mut data.rooms {
             let names = room
                 .kinds
                 .iter()
                 .map(String::as_str)
                 .chain([room.name.as_str()]);
-            if let Some((_, kind)) =
-                most_specific_match(&self.rooms, names).filter(|(_, kind)| !kind.is_empty())
-            {
+            let found = patterns.rooms.best_match(names, &mut work)?;
+            if let Some((_, kind)) = found.filter(|(_, kind)| !kind.is_empty()) {
                 room.kinds = vec![room_kind(kind).unwrap_or_else(|plain| plain)];
             }
         }
-        report.retain(|warning| match &warning.kind {
-            WarningKind::Unmapped { name, .. } => {
-                let name = || std::iter::once(name.as_str());
-                let material = most_specific_match(&self.materials, name())
-                    .is_some_and(|(_, row)| !row.0.substance.is_empty());
-                let node = most_specific_match(&self.nodes, name())
-                    .is_some_and(|(_, row)| !row.0.category.is_empty() || row.0.hinge.is_some());
-                let room = most_specific_match(&self.rooms, name())
-                    .is_some_and(|(_, kind)| !kind.is_empty());
-                !(material || node || room)
+        let mut explained = BTreeSet::new();
+        for warning in report.warnings() {
+            if let WarningKind::Unmapped { name, .. } = &warning.kind
+                && patterns.explains(name, &mut work)?
+            {
+                explained.insert(name.clone());
             }
+        }
+        report.retain(|warning| match &warning.kind {
+            WarningKind::Unmapped { name, .. } => !explained.contains(name),
             _ => true,
         });
         House::new(data).map_err(HousesError::scene(&FileLocation::file("map")))
     }
+}
 
-    fn apply_materials(&self, data: &mut HouseData) -> Result<(), HousesError> {
+/// The rows of a map by their patterns.
+struct MapPatterns<'a> {
+    materials: NamePatterns<'a, MaterialMappingEntry>,
+    nodes: NamePatterns<'a, MappedNode>,
+    rooms: NamePatterns<'a, MappedRoom>,
+}
+
+impl MapPatterns<'_> {
+    /// Returns whether the map says what a foreign name means.
+    fn explains(&self, name: &str, work: &mut ComparisonWork) -> Result<bool, HousesError> {
+        let material = self.materials.best_match([name], work)?;
+        let node = self.nodes.best_match([name], work)?;
+        let room = self.rooms.best_match([name], work)?;
+        Ok(material.is_some_and(|(_, row)| !row.0.substance.is_empty())
+            || node.is_some_and(|(_, row)| !row.0.category.is_empty() || row.0.hinge.is_some())
+            || room.is_some_and(|(_, kind)| !kind.is_empty()))
+    }
+
+    fn apply_materials(
+        &self,
+        data: &mut HouseData,
+        work: &mut ComparisonWork,
+    ) -> Result<(), HousesError> {
         for k in 0..data.materials.len() {
             let id = dwell_scene::MaterialId(k as u32);
             let material = &data.materials[id];
             let image = material
                 .texture
                 .map(|texture| data.textures[texture].name.as_str());
-            let Some((pattern, MaterialMappingEntry(row))) = most_specific_match(
-                &self.materials,
-                image.into_iter().chain([material.name.as_str()]),
-            ) else {
+            let names = image.into_iter().chain([material.name.as_str()]);
+            let Some((pattern, MaterialMappingEntry(row))) =
+                self.materials.best_match(names, work)?
+            else {
                 continue;
             };
             let look = SurfaceStyle {
@@ -281,14 +308,12 @@ impl NameMapping {
         &self,
         data: &mut HouseData,
         report: &mut LoadReport,
+        work: &mut ComparisonWork,
     ) -> Result<(), HousesError> {
-        let mut taken: BTreeSet<String> = data
-            .objects
-            .iter()
-            .map(|object| object.name.clone())
-            .collect();
+        let mut given = UniqueNames::taken(data.objects.iter().map(|object| &object.name));
         let mut walls = BTreeSet::new();
         for k in 0..data.objects.len() {
+            interrupt::unwind_if_cancelled();
             let id = ObjectId(k as u32);
             let object = &data.objects[id];
             let names = [
@@ -296,9 +321,7 @@ impl NameMapping {
                 object.model.as_str(),
                 object.name.as_str(),
             ];
-            let Some((pattern, MappedNode(row))) =
-                most_specific_match(&self.nodes, names.into_iter())
-            else {
+            let Some((pattern, MappedNode(row))) = self.nodes.best_match(names, work)? else {
                 continue;
             };
             let place = format!("nodes.{pattern:?}");
@@ -342,19 +365,12 @@ impl NameMapping {
                 object.switch = Some(false);
             }
             if let Some(name) = row.name.as_ref().filter(|name| **name != object.name) {
-                let mut free = name.clone();
-                let mut number = 2;
-                while name.is_empty() || taken.contains(&free) {
-                    if name.is_empty() {
-                        return Err(prefix_field(place)(invalid_field(
-                            "name", "nothing", "a name",
-                        )));
-                    }
-                    free = format!("{name}_{number}");
-                    number += 1;
+                if name.is_empty() {
+                    return Err(prefix_field(place)(invalid_field(
+                        "name", "nothing", "a name",
+                    )));
                 }
-                taken.insert(free.clone());
-                object.name = free;
+                object.name = given.unique(name);
             }
         }
         if !walls.is_empty() {
@@ -368,56 +384,6 @@ impl NameMapping {
         }
         Ok(())
     }
-}
-
-/// The row whose pattern fits one of the names with the most plain letters; of equals the first.
-fn most_specific_match<'a, 'n, T>(
-    rows: &'a BTreeMap<String, T>,
-    names: impl Iterator<Item = &'n str>,
-) -> Option<(&'a str, &'a T)> {
-    let names: Vec<Vec<char>> = names.map(letters).collect();
-    let plain = |pattern: &str| pattern.chars().filter(|c| !matches!(c, '*' | '?')).count();
-    let mut found: Option<(&'a str, &'a T)> = None;
-    for (pattern, row) in rows {
-        let word = letters(pattern);
-        if names.iter().any(|name| fits(&word, name))
-            && found.is_none_or(|(other, _)| plain(pattern) > plain(other))
-        {
-            found = Some((pattern, row));
-        }
-    }
-    found
-}
-
-fn letters(text: &str) -> Vec<char> {
-    text.chars().flat_map(char::to_lowercase).collect()
-}
-
-/// Returns whether a name fits a pattern: `*` stands for any letters, `?` for one.
-fn fits(pattern: &[char], name: &[char]) -> bool {
-    let (mut p, mut n) = (0, 0);
-    // After the last star: the position in the pattern, and the part of the name that the star has taken.
-    let mut star: Option<(usize, usize)> = None;
-    while n < name.len() {
-        match pattern.get(p) {
-            Some('*') => {
-                p += 1;
-                star = Some((p, n));
-            }
-            Some(c) if *c == '?' || *c == name[n] => {
-                p += 1;
-                n += 1;
-            }
-            _ => {
-                let Some((after, taken)) = star else {
-                    return false;
-                };
-                (p, n) = (after, taken + 1);
-                star = Some((after, taken + 1));
-            }
-        }
-    }
-    pattern[p..].iter().all(|c| *c == '*')
 }
 
 /// Movable, for an unknown object whose category moves, and which stands on something.
@@ -531,29 +497,6 @@ fn pluralize(count: usize, noun: &str) -> String {
 #[cfg(test)]
 mod tests {
     use super::*;
-
-    #[test]
-    fn patterns_fit_as_in_a_shell_and_the_longest_counts() {
-        let is = |pattern: &str, name: &str| fits(&letters(pattern), &letters(name));
-        assert!(
-            is("Wood_*", "wood_12")
-                && is("*", "")
-                && is("a?c*", "ABCde")
-                && is("*a*b*", "xxaxxbxx")
-        );
-        assert!(!is("wood", "wood_1") && !is("a?c", "ac") && !is("*a*b", "xxbxxa"));
-        let rows: BTreeMap<String, u8> = [
-            ("*".into(), 0),
-            ("wood*".into(), 1),
-            ("wood_dark*".into(), 2),
-        ]
-        .into();
-        let of = |name: &str| most_specific_match(&rows, [name].into_iter()).map(|(_, row)| *row);
-        assert_eq!(
-            (of("Wood_Dark_3"), of("wood_3"), of("x")),
-            (Some(2), Some(1), Some(0))
-        );
-    }
 
     #[test]
     fn a_map_says_where_it_is_wrong() {

@@ -1,6 +1,6 @@
 //! Lamps of files that know lights by their positions alone: each is attached to the object that it most likely belongs to.
 
-use dwell_scene::{Aabb, HouseData, Id, Light, LightShape, Mobility, ObjectId};
+use dwell_scene::{Aabb, HouseData, Id, Light, LightShape, Mobility, ObjectId, interrupt};
 use glam::Vec3;
 
 /// Largest distance at which a moving thing counts as a lamp's own, m.
@@ -31,6 +31,7 @@ fn names_object_or_part(name: &str, thing: &str) -> bool {
 /// `bounds`: the box of each object. Without an object there are no lamps.
 pub(super) fn attach_lamps(lamps: Vec<ImportedLamp>, data: &mut HouseData, bounds: &[Aabb]) {
     for lamp in lamps {
+        interrupt::unwind_if_cancelled();
         let apart_m = |k: usize| {
             let own = &bounds[k];
             let apart = (lamp.position.clamp(own.min, own.max) - lamp.position).length();

@@ -11,6 +11,14 @@ pub(crate) struct UniqueNames {
 }
 
 impl UniqueNames {
+    /// Where these names are given already.
+    pub(crate) fn taken<'a>(names: impl Iterator<Item = &'a String>) -> Self {
+        Self {
+            taken: names.cloned().collect(),
+            next: BTreeMap::new(),
+        }
+    }
+
     /// `base` when it is free, else `base_2`, `base_3`, ...
     pub(crate) fn unique(&mut self, base: &str) -> String {
         let base = if base.is_empty() { "unnamed" } else { base };

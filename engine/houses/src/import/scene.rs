@@ -128,11 +128,7 @@ impl ImportedScene {
         };
         let mut builder = HouseBuilder {
             data,
-            names: UniqueNames::default(),
-            structure_names: UniqueNames::default(),
-            room_names: UniqueNames::default(),
-            bounds: Vec::new(),
-            meshes: BTreeMap::new(),
+            ..HouseBuilder::default()
         };
         let one = (self.levels.is_empty()).then(|| "0".to_owned());
         for name in one.into_iter().chain(self.levels) {
@@ -294,6 +290,7 @@ pub(crate) fn room_over_floors(data: &mut HouseData, at: &FileLocation, report: 
         .for_each(|piece| piece.room = Some(id));
 }
 
+#[derive(Default)]
 struct HouseBuilder {
     data: HouseData,
     names: UniqueNames,
@@ -466,18 +463,21 @@ impl HouseBuilder {
         };
         let grounds: Vec<f32> = self.data.levels.ids().map(floor_of).collect();
         for (k, object) in self.data.objects.iter_mut().enumerate().skip(known) {
+            interrupt::unwind_if_cancelled();
             let own = self.bounds[k];
             let foot = own.center().with_y(own.min.y);
-            let stands = self.bounds.iter().enumerate().any(|(other, b)| {
-                other != k
-                    && b.min.y < foot.y - 0.01
-                    && foot.y < b.max.y + GAP_M
-                    && b.contains(foot.with_y(b.center().y))
-            });
+            let stands = || {
+                self.bounds.iter().enumerate().any(|(other, b)| {
+                    other != k
+                        && b.min.y < foot.y - 0.01
+                        && foot.y < b.max.y + GAP_M
+                        && b.contains(foot.with_y(b.center().y))
+                })
+            };
             if object.mobility == Mobility::Movable
                 && !alone
-                && !stands
                 && (foot.y - grounds[object.level.index()]).abs() > GAP_M
+                && !stands()
             {
                 object.mobility = Mobility::Fixed;
                 object.pickable = false;
@@ -512,5 +512,31 @@ mod tests {
             (name("coffee_table_2"), name("Blue Chair.003"), name("Cube")),
             (Some("coffee_table"), Some("chair"), None)
         );
+    }
+
+    /// Each floating thing is compared with all others.
+    #[test]
+    fn many_floating_things_can_be_stopped() {
+        let mut builder = HouseBuilder::default();
+        let (name, bounds) = ("0".to_owned(), Aabb::EMPTY);
+        builder.data.levels.push(Level { name, bounds });
+        let mesh = Arc::new(Mesh::cuboid(Vec3::splat(-0.1), Vec3::splat(0.1)));
+        for k in 0..20_000 {
+            let thing = SceneNode {
+                name: "chair".to_owned(),
+                mesh: mesh.clone(),
+                world_from_mesh: Affine3A::from_translation(Vec3::Y * k as f32),
+                materials: Vec::new(),
+                level: None,
+                room: None,
+                role: NodeRole::Object,
+                part_of: None,
+            };
+            let at = FileLocation::file("a.gltf");
+            builder.object(thing, false, &at, &mut LoadReport::new());
+        }
+        let stopped =
+            interrupt::interruptible(|| true, || builder.make_floating_objects_fixed(false, 0));
+        assert!(stopped.is_err());
     }
 }

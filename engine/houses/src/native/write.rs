@@ -24,9 +24,8 @@ fn check_name(path: &Path) -> Result<(), HousesError> {
     })
 }
 
-/// Returns whether a folder is a house, or holds nothing but what is left of one.
+/// Returns whether a folder holds nothing but a house, or what is left of one: what else is in it is its owner's.
 fn is_house(folder: &Path) -> bool {
-    let has = |name: &str| folder.join(name).is_file();
     let is_part = |entry: std::io::Result<fs::DirEntry>| {
         entry.is_ok_and(|entry| {
             let name = entry.file_name();
@@ -35,8 +34,7 @@ fn is_house(folder: &Path) -> bool {
             is_named && entry.path().is_file()
         })
     };
-    (has(TABLES) && has(GEOMETRY))
-        || fs::read_dir(folder).is_ok_and(|mut entries| entries.all(is_part))
+    fs::read_dir(folder).is_ok_and(|mut entries| entries.all(is_part))
 }
 
 /// Writes a house so that [`open`](super::open) gives it back bit for bit. An old native house at `path`, or what is

@@ -163,8 +163,12 @@ fn an_old_house_is_replaced_and_anything_else_is_not() {
         native::write(&larger, &path).unwrap();
         assert_eq!(open(&path.to_string_lossy()).unwrap().0, larger);
     }
-    std::fs::remove_file(path.join("house.json")).unwrap();
+    // What its owner put beside its files stays, whether these are whole or not.
     std::fs::write(path.join("notes"), "precious").unwrap();
+    let error = native::write(&larger, &path).unwrap_err().to_string();
+    assert!(error.ends_with("it is not replaced"), "{error}");
+    assert!(path.join("notes").is_file());
+    std::fs::remove_file(path.join("house.json")).unwrap();
     let error = native::write(&larger, &path).unwrap_err().to_string();
     assert!(error.ends_with("it is not replaced"), "{error}");
     assert!(path.join("notes").is_file());

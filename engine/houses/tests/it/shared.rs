@@ -210,6 +210,32 @@ fn suncg_houses_share_models_and_textures() {
 }
 
 #[test]
+fn names_with_a_dot_and_a_dash_are_two_houses() {
+    let folder = tempfile::tempdir().unwrap();
+    let root = folder.path().join("many");
+    let write = |name: &str, size_m: [f32; 3]| {
+        let house = House::shoebox(size_m, &ShoeboxMaterials::default()).unwrap();
+        suncg::write_into(&house, &root, name)
+    };
+    let (dot, _) = write("home.1", [4.0, 3.0, 5.0]).unwrap();
+    let (dash, _) = write("home-1", [2.0, 3.0, 2.0]).unwrap();
+    suncg::write_shared_tables(&root).unwrap();
+    assert!(dot.ends_with("house/home.1/house.json"), "{dot:?}");
+    let width = |path: &std::path::Path| {
+        let (house, _) = open(&path.to_string_lossy()).unwrap();
+        house.rooms.as_slice()[0].bounds.size().x
+    };
+    assert!(width(&dot) > 3.9 && width(&dash) < 2.1);
+    // Its folder is the house, too.
+    assert!(width(dot.parent().unwrap()) > 3.9);
+    for name in ["", ".home", "..", "a/b", "a b", "h\u{f6}me", "home.dwell"] {
+        let told = write(name, [4.0, 3.0, 5.0]).unwrap_err().to_string();
+        assert!(told.contains("allowed are names of"), "{name:?}: {told}");
+    }
+    assert_eq!(std::fs::read_dir(root.join("house")).unwrap().count(), 2);
+}
+
+#[test]
 fn unknown_forms_are_named_with_those_there_are() {
     let error = writer("fbx").err().unwrap();
     assert_eq!(

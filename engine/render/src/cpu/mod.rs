@@ -20,6 +20,7 @@ use crate::triangle_table::TriangleTable;
 pub(crate) use camera_rays::VISIBLE_MASK;
 use dwell_scene::bvh::{Ray, TriangleBvh};
 use dwell_scene::parallel::Threads;
+use dwell_scene::parallel::apart_from_pool;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{Aabb, House, State};
 use std::collections::VecDeque;
@@ -239,7 +240,9 @@ impl CpuRenderer {
 
     pub(crate) fn static_lighting(&self) -> &StaticLighting {
         self.light.get_or_init(|| {
-            StaticLighting::new(&self.house, &self.shading_materials, &self.textures)
+            apart_from_pool(|| {
+                StaticLighting::new(&self.house, &self.shading_materials, &self.textures)
+            })
         })
     }
 

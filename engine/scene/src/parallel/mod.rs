@@ -3,11 +3,14 @@
 //! A pool belongs to one process id, because threads do not survive `fork()`. Results never depend on the number of
 //! threads: work is cut into pieces of constant size, and pieces are joined in order.
 
+mod own_threads;
 mod pool;
 mod thread_count;
 
 use crate::error::SceneError;
 use crate::interrupt;
+pub use own_threads::apart_from_pool;
+use std::sync::{Mutex, PoisonError};
 pub use thread_count::{available_cores, hardware_threads, threads_variable};
 
 /// The number of threads that a call may use; at least one.
@@ -64,6 +67,14 @@ impl Threads {
     /// Calls `work` once for each item, with the item's position. Can be cancelled between items: see [`interrupt`].
     pub fn for_each<T: Send>(self, items: &mut [T], work: impl Fn(usize, &mut T) + Sync) {
         use rayon::prelude::*;
+        if items.len() > 1 && self.0 > 1 && own_threads::is_apart() {
+            let slots: Vec<Mutex<&mut T>> = items.iter_mut().map(Mutex::new).collect();
+            own_threads::map(self.0, slots.len(), |k| {
+                let mut item = slots[k].lock().unwrap_or_else(PoisonError::into_inner);
+                work(k, &mut item);
+            });
+            return;
+        }
         if items.len() > 1
             && let Some(pool) = self.pool()
         {
@@ -91,6 +102,9 @@ impl Threads {
         first: impl FnOnce() -> A + Send,
         second: impl FnOnce() -> B + Send,
     ) -> (A, B) {
+        if self.0 > 1 && own_threads::is_apart() {
+            return own_threads::join(first, second);
+        }
         if let Some(pool) = self.pool() {
             let token = interrupt::current_token();
             let token = token.as_ref();
@@ -107,6 +121,9 @@ impl Threads {
     /// Returns the results of `work(0)` to `work(thread_count - 1)`, in order. Can be cancelled between them: see [`interrupt`].
     pub fn map<R: Send>(self, count: usize, work: impl Fn(usize) -> R + Sync) -> Vec<R> {
         use rayon::prelude::*;
+        if count > 1 && self.0 > 1 && own_threads::is_apart() {
+            return own_threads::map(self.0, count, work);
+        }
         if count > 1
             && let Some(pool) = self.pool()
         {

@@ -155,7 +155,12 @@ fn a_law_without_its_target_is_refused_with_the_names_there_are() {
         ("drag", "nothing", "c_d", "ball"),
         ("backlash", "nothing", "half_width", "elbow"),
         ("rolling_resistance", "marbles", "c_rr", "\"marble\""),
-        ("rolling_resistance", "parquet~marbles", "c_rr", "\"marble\""),
+        (
+            "rolling_resistance",
+            "parquet~marbles",
+            "c_rr",
+            "\"marble\"",
+        ),
         (
             "contact_compliance",
             "nothing",

@@ -44,18 +44,20 @@ pub fn write(house: &House, path: &Path) -> Result<Vec<ExportLoss>, HousesError>
 
 /// Writes `house` into the data root at `root` as `house/NAME/house.json`; models and textures are named by their content,
 /// so that all houses of the root share them. [`write_shared_tables`] then writes the tables. Returns the house's file.
+/// An old house of this name is replaced.
 ///
 /// # Errors
-/// [`HousesError::NotRepresentable`] when a texture cannot be written, [`HousesError::Io`] when the system refuses.
+/// [`HousesError::NotRepresentable`] when the name is not of ASCII letters, digits, `_`, `-` and `.`, begins with `.` or ends in
+/// `.dwell`, and when a texture cannot be written; [`HousesError::Io`] when the system refuses.
 pub fn write_into(
     house: &House,
     root: &Path,
     name: &str,
 ) -> Result<(PathBuf, Vec<ExportLoss>), HousesError> {
-    let scene_id = plain_name(name);
+    check_folder_name(root, name)?;
     let mut losses = losses::house_losses(house);
-    let draft = StagedPath::folder(&root.join(&scene_id)).map_err(HousesError::io(root))?;
-    SuncgWriter::new(house, draft.path(), scene_id.clone(), true)
+    let draft = StagedPath::folder(&root.join(name)).map_err(HousesError::io(root))?;
+    SuncgWriter::new(house, draft.path(), name.to_owned(), true)
         .write_all_but_tables(&mut losses)?;
     // Shared files come first and the house last: a house that exists is complete.
     for (folder, is_shared) in [
@@ -66,8 +68,22 @@ pub fn write_into(
     ] {
         move_all(&draft.path().join(folder), &root.join(folder), is_shared)?;
     }
-    let file = root.join("house").join(scene_id).join("house.json");
+    let file = root.join("house").join(name).join("house.json");
     Ok((file, losses.into_vec()))
+}
+
+/// Checks that a name can be that of a house's folder as it is: changed, it could be that of another house.
+fn check_folder_name(root: &Path, name: &str) -> Result<(), HousesError> {
+    let is_allowed = |c: char| is_plain(c) || c == '.';
+    // A folder NAME.dwell is a house of the native form.
+    let is_native = name.to_ascii_lowercase().ends_with(".dwell");
+    if !name.is_empty() && name.chars().all(is_allowed) && !name.starts_with('.') && !is_native {
+        return Ok(());
+    }
+    Err(HousesError::NotRepresentable {
+        path: root.join("house").join(name),
+        message: "allowed are names of ASCII letters, digits, _, - and ., without . in front and .dwell at the end".to_owned(),
+    })
 }
 
 /// Moves everything in folder `from` into folder `to`; existing files stay if they are shared and whole, else they are replaced.
@@ -297,15 +313,13 @@ fn bounds(bounds: &Aabb) -> Option<SuncgBounds> {
     })
 }
 
+const fn is_plain(c: char) -> bool {
+    c.is_ascii_alphanumeric() || c == '_' || c == '-'
+}
+
 /// A name that can be a file's: letters, digits, `_`, `-`.
 fn plain_name(name: &str) -> String {
-    let plain = |c: char| {
-        if c.is_ascii_alphanumeric() || c == '_' || c == '-' {
-            c
-        } else {
-            '-'
-        }
-    };
+    let plain = |c: char| if is_plain(c) { c } else { '-' };
     let mut plain: String = name.chars().map(plain).collect();
     if plain.is_empty() {
         "unnamed".clone_into(&mut plain);

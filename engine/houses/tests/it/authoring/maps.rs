@@ -137,6 +137,35 @@ fn a_map_that_cannot_be_is_refused_with_its_place() {
     );
 }
 
+/// Any file may be named as a map, and errors go into logs.
+#[test]
+fn a_file_that_is_no_map_shows_nothing_of_itself() {
+    let (folder, path) = folder();
+    let map = folder.path().join("secret");
+    for (text, told) in [
+        (
+            "password = hunter2 and more\n",
+            "secret:1: column 12: string values must be quoted, expected literal string",
+        ),
+        (
+            "# ours\npassword = \"hunter2\"\n",
+            "secret:2: column 1: unknown field, expected one of `materials`, `nodes`, `rooms`",
+        ),
+        (
+            "[materials]\nwood = [\"hunter2\"]\n",
+            "secret:2: column 8: invalid type: sequence, expected a substance's name, or a table with `substance`",
+        ),
+        (
+            "[nodes]\ndoor = { hinge = { edge = \"hunter2\" } }\n",
+            "secret:2: column 27: unknown variant, expected one of `-x`, `+x`, `-y`, `+y`, `-z`, `+z`",
+        ),
+    ] {
+        fs::write(&map, text).unwrap();
+        let error = open(&format!("{path}?map={}", map.display())).unwrap_err();
+        assert_eq!(error.to_string(), told);
+    }
+}
+
 /// A floor, and a leaf of 0.9 by 2 by 0.04 m along x that stands free in the middle.
 fn leaf(folder: &std::path::Path) -> String {
     let mut text = "o Floor\nv 0 0 0\nv 0 0 4\nv 4 0 4\nv 4 0 0\nf 1 2 3 4\no Leaf.1\n".to_owned();
