@@ -27,7 +27,7 @@ pub(super) const LOOK_ALIKES: [(&str, &str, bool); 8] = [
     ("wall cabinet", "kitchen cabinet", true),
 ];
 /// Distance up to which readers take a thing for one beside another, m: the relation ends at 0.5 m.
-const BESIDE_TO_READERS_M: f32 = 1.2;
+const BESIDE_TO_READERS_M: f32 = 0.8;
 /// Things between checks for cancellation.
 const THINGS_PER_CHECK: usize = 64;
 
