@@ -110,8 +110,12 @@ impl Engines {
 
     /// Returns the semantics of the house.
     pub fn semantics(&self) -> &Semantics {
-        self.semantics
-            .get_or_init(|| apart_from_pool(|| Semantics::new(&self.house)))
+        if let Some(made) = self.semantics.get() {
+            return made;
+        }
+        // Without a lock, so that all threads help; the one that loses a race is dropped, as they are equal.
+        let made = Semantics::new(&self.house);
+        self.semantics.get_or_init(|| made)
     }
 
     /// The shapes of the house's bodies.
