@@ -50,14 +50,14 @@ impl Semantics {
         let ((), (paints, structure, rest_extents)) = threads.join(
             || house.bake_geometry(threads),
             || {
-                let gathered = (
+                // Whoever asks for facts goes on to say them. One thread compiles the grammar while the other bakes; they
+                // share what follows.
+                Language::english();
+                (
                     MaterialColors::gather(house),
                     structure_outlines(house),
                     rest_extents(house, &state),
-                );
-                // Whoever asks for facts goes on to say them: the grammar is compiled meanwhile.
-                Language::english();
-                gathered
+                )
             },
         );
         let rays = RayScene::new(house.clone());

@@ -64,7 +64,7 @@ pub(super) const DIGITS: &str = "digits";
 struct Compiler<'a> {
     file: &'a GrammarFile,
     /// The categories that rules make; all others are classes of the lexicon.
-    made: BTreeSet<String>,
+    made: BTreeSet<&'a str>,
     found: Productions,
 }
 
@@ -87,37 +87,33 @@ impl<'a> Compiler<'a> {
         number
     }
 
-    /// The assignments of variants to the variables of a wording; `Any` of the k-th piece is the variable `"#k"`.
+    /// The assignments of variants to the variables of a wording.
     fn choices(
         &self,
-        rule: &RuleFile,
-        pieces: &[TemplateElement],
-        result: &(String, VariantPattern),
-    ) -> Result<Vec<BTreeMap<String, String>>, GrammarError> {
-        let mut choices = vec![BTreeMap::new()];
-        let mut places: Vec<(String, String)> =
-            vec![(name_of(&result.1, usize::MAX), result.0.clone())];
+        rule: &'a RuleFile,
+        pieces: &[TemplateElement<'a>],
+        result: (&'a str, VariantPattern<'a>),
+    ) -> Result<Vec<Choice<'a>>, GrammarError> {
+        let mut choices: Vec<Choice<'a>> = vec![Vec::new()];
+        let mut places = vec![(Variable::of(result.1, usize::MAX), result.0)];
         for (k, piece) in pieces.iter().enumerate() {
-            match piece {
-                TemplateElement::Word(_) | TemplateElement::Inflected(..) => {}
-                TemplateElement::Argument(at, variant) => {
-                    places.push((name_of(variant, k), rule.arguments[*at].clone()));
-                }
+            if let TemplateElement::Argument(at, variant) = piece {
+                places.push((Variable::of(*variant, k), &rule.arguments[*at]));
             }
         }
-        for (name, category) in places {
-            let variants = self.variants(&category);
-            if variants.contains(&name) {
+        for (variable, category) in places {
+            let variants = self.variants(category);
+            if matches!(variable, Variable::Named(name) if variants.iter().any(|one| one == name)) {
                 continue;
             }
             let mut next = Vec::new();
-            for choice in &choices {
-                match choice.get(&name) {
-                    Some(chosen) if variants.contains(chosen) => next.push(choice.clone()),
+            for choice in choices {
+                match chosen(&choice, variable) {
+                    Some(chosen) if variants.iter().any(|one| one == chosen) => next.push(choice),
                     Some(_) => {}
                     None => next.extend(variants.iter().map(|variant| {
-                        let mut more: BTreeMap<String, String> = choice.clone();
-                        more.insert(name.clone(), variant.clone());
+                        let mut more = choice.clone();
+                        more.push((variable, variant));
                         more
                     })),
                 }
@@ -125,7 +121,7 @@ impl<'a> Compiler<'a> {
             choices = next;
         }
         if choices.is_empty() {
-            let known = self.variants(&result.0).to_vec();
+            let known = self.variants(result.0).to_vec();
             return Err(unknown(rule, "common variant of", &rule.result, known));
         }
         Ok(choices)
@@ -135,12 +131,10 @@ impl<'a> Compiler<'a> {
         &self,
         rule: &RuleFile,
         category: &str,
-        variant: &VariantPattern,
-        piece: usize,
-        choice: &BTreeMap<String, String>,
+        variable: Variable<'a>,
+        choice: &Choice<'a>,
     ) -> Result<usize, GrammarError> {
-        let name = name_of(variant, piece);
-        let name = choice.get(&name).unwrap_or(&name);
+        let name = value(variable, choice);
         let variants = self.variants(category);
         let at = variants.iter().position(|known| known == name);
         at.ok_or_else(|| unknown(rule, "variant", name, variants.to_vec()))
@@ -148,19 +142,18 @@ impl<'a> Compiler<'a> {
 
     fn symbol(
         &mut self,
-        rule: &RuleFile,
-        (k, piece): (usize, &TemplateElement),
-        choice: &BTreeMap<String, String>,
+        rule: &'a RuleFile,
+        (k, piece): (usize, &TemplateElement<'a>),
+        choice: &Choice<'a>,
     ) -> Result<Symbol, GrammarError> {
         Ok(match piece {
             TemplateElement::Word(word) => Symbol::Word(word.clone()),
             TemplateElement::Inflected(name, variant) => {
-                let Some(forms) = self.file.words.get(name) else {
+                let Some(forms) = self.file.words.get(*name) else {
                     let known = self.file.words.keys().cloned().collect();
                     return Err(unknown(rule, "word", name, known));
                 };
-                let variant = name_of(variant, k);
-                let variant = choice.get(&variant).unwrap_or(&variant);
+                let variant = value(Variable::of(*variant, k), choice);
                 let word = forms.get(variant).ok_or_else(|| {
                     let known = forms.keys().cloned().collect();
                     unknown(rule, "variant", variant, known)
@@ -168,16 +161,16 @@ impl<'a> Compiler<'a> {
                 Symbol::Word(word.to_lowercase())
             }
             TemplateElement::Argument(at, variant) => {
-                let category = rule.arguments[*at].clone();
-                let variant = self.variant_of(rule, &category, variant, k, choice)?;
-                let kind = match category.as_str() {
+                let category = rule.arguments[*at].as_str();
+                let variant = self.variant_of(rule, category, Variable::of(*variant, k), choice)?;
+                let kind = match category {
                     COUNT => ArgumentKind::Count,
                     ORDINAL => ArgumentKind::Ordinal,
                     DIGITS => ArgumentKind::Digits,
                     made if self.made.contains(made) => {
-                        ArgumentKind::Rules(self.intern_non_terminal(&category, variant))
+                        ArgumentKind::Rules(self.intern_non_terminal(category, variant))
                     }
-                    _ => ArgumentKind::Entry(category, variant),
+                    _ => ArgumentKind::Entry(category.to_owned(), variant),
                 };
                 Symbol::Argument(*at, kind)
             }
@@ -186,13 +179,13 @@ impl<'a> Compiler<'a> {
 
     fn add(
         &mut self,
-        rule: &RuleFile,
-        text: &str,
+        rule: &'a RuleFile,
+        text: &'a str,
         wording: Option<usize>,
     ) -> Result<(), GrammarError> {
         let pieces = read(text, rule.arguments.len())?;
         for argument in 0..rule.arguments.len() {
-            let said = |piece: &TemplateElement| matches!(piece, TemplateElement::Argument(at, _) if *at == argument);
+            let said = |piece: &TemplateElement<'_>| matches!(piece, TemplateElement::Argument(at, _) if *at == argument);
             if !pieces.iter().any(said) {
                 return Err(GrammarError::LeftOut {
                     rule: rule.function.clone(),
@@ -202,9 +195,10 @@ impl<'a> Compiler<'a> {
             }
         }
         let result = category(&rule.result);
-        for choice in self.choices(rule, &pieces, &result)? {
-            let variant = self.variant_of(rule, &result.0, &result.1, usize::MAX, &choice)?;
-            let number = self.intern_non_terminal(&result.0, variant);
+        for choice in self.choices(rule, &pieces, result)? {
+            let variable = Variable::of(result.1, usize::MAX);
+            let variant = self.variant_of(rule, result.0, variable, &choice)?;
+            let number = self.intern_non_terminal(result.0, variant);
             let symbols = pieces.iter().enumerate();
             let symbols: Result<Vec<Symbol>, GrammarError> = symbols
                 .map(|piece| self.symbol(rule, piece, &choice))
@@ -230,6 +224,38 @@ impl<'a> Compiler<'a> {
     }
 }
 
+/// What stands for a variant in a wording: a name, which is a variant or a variable, or any variant of the piece of this number.
+#[derive(Clone, Copy, PartialEq, Eq)]
+enum Variable<'a> {
+    Named(&'a str),
+    AnyOf(usize),
+}
+
+impl<'a> Variable<'a> {
+    fn of(variant: VariantPattern<'a>, piece: usize) -> Self {
+        match variant {
+            VariantPattern::Any => Self::AnyOf(piece),
+            VariantPattern::Named(name) => Self::Named(name),
+        }
+    }
+}
+
+/// The variants that the variables of a wording have.
+type Choice<'a> = Vec<(Variable<'a>, &'a str)>;
+
+fn chosen<'a>(choice: &Choice<'a>, variable: Variable<'a>) -> Option<&'a str> {
+    let own = choice.iter().find(|(known, _)| *known == variable);
+    own.map(|(_, variant)| *variant)
+}
+
+/// The variant that a variable has, or that it names.
+fn value<'a>(variable: Variable<'a>, choice: &Choice<'a>) -> &'a str {
+    chosen(choice, variable).unwrap_or(match variable {
+        Variable::Named(name) => name,
+        Variable::AnyOf(_) => "",
+    })
+}
+
 fn unknown(rule: &RuleFile, kind: &'static str, name: &str, known: Vec<String>) -> GrammarError {
     GrammarError::Unknown {
         rule: rule.function.clone(),
@@ -239,25 +265,15 @@ fn unknown(rule: &RuleFile, kind: &'static str, name: &str, known: Vec<String>) 
     }
 }
 
-/// The name of a variant or variable; a piece that takes any variant has a variable of its own.
-fn name_of(variant: &VariantPattern, piece: usize) -> String {
-    match variant {
-        VariantPattern::Any => format!("#{piece}"),
-        VariantPattern::Named(name) => name.clone(),
-    }
-}
-
 /// Compiles a grammar file to productions.
 ///
 /// # Errors
 /// [`GrammarError`] names the rule and what is wrong in it.
 pub(super) fn compile(file: &GrammarFile) -> Result<Productions, GrammarError> {
-    let mut signatures: BTreeMap<&str, (&[String], String)> = BTreeMap::new();
+    let mut signatures: BTreeMap<&str, (&[String], &str)> = BTreeMap::new();
     for rule in &file.rule {
         let own = (rule.arguments.as_slice(), category(&rule.result).0);
-        let known = signatures
-            .entry(&rule.function)
-            .or_insert_with(|| own.clone());
+        let known = signatures.entry(&rule.function).or_insert(own);
         if *known != own {
             return Err(GrammarError::Signature {
                 rule: rule.function.clone(),

@@ -32,7 +32,7 @@ pub use tree::Tree;
 use compile::{NonTerminal, Productions, Symbol};
 use file::GrammarFile;
 use paraphrase::Paraphrases;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashSet};
 use std::sync::Arc;
 
 /// The rules and the lexicon of a language.
@@ -73,12 +73,16 @@ impl Grammar {
             }
         }
         let symbols = productions.all.iter().flat_map(|one| &one.symbols);
-        let words = symbols.filter_map(|symbol| match symbol {
-            Symbol::Word(word) => Some(word.clone()),
-            Symbol::Argument(..) => None,
-        });
+        // Each word stands in many rules: hashing is faster than sorting all of them.
+        let words: HashSet<&str> = symbols
+            .filter_map(|symbol| match symbol {
+                Symbol::Word(word) => Some(word.as_str()),
+                Symbol::Argument(..) => None,
+            })
+            .collect();
+        let words: BTreeSet<String> = words.into_iter().map(str::to_owned).collect();
         Ok(Self {
-            words: Arc::new(words.collect()),
+            words: Arc::new(words),
             drawn: Arc::new(file.drawn.into_iter().collect()),
             paraphrases: Arc::new(Paraphrases::new(&file.paraphrases, file.endings)),
             productions: Arc::new(productions),

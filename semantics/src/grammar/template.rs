@@ -3,30 +3,30 @@
 use super::GrammarError;
 
 /// A variant of a category, such as singular or plural.
-#[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum VariantPattern {
+#[derive(Clone, Copy, Debug, PartialEq, Eq)]
+pub(super) enum VariantPattern<'a> {
     /// Any variant of the argument.
     Any,
     /// The variant of this name; else a variable over the variants of its category, with one value throughout a rule.
-    Named(String),
+    Named(&'a str),
 }
 
 /// An element of a template.
 #[derive(Clone, Debug, PartialEq, Eq)]
-pub(super) enum TemplateElement {
+pub(super) enum TemplateElement<'a> {
     /// A word as it stands, in lower case, or a punctuation mark.
     Word(String),
     /// `[be.n]`: a word of the grammar's own in a variant.
-    Inflected(String, VariantPattern),
+    Inflected(&'a str, VariantPattern<'a>),
     /// `{1.n}`: an argument, counted from 0 here.
-    Argument(usize, VariantPattern),
+    Argument(usize, VariantPattern<'a>),
 }
 
 /// A category with a variant: `cn.n`.
-pub(super) fn category(text: &str) -> (String, VariantPattern) {
+pub(super) fn category(text: &str) -> (&str, VariantPattern<'_>) {
     match text.split_once('.') {
-        Some((name, variant)) => (name.to_owned(), VariantPattern::Named(variant.to_owned())),
-        None => (text.to_owned(), VariantPattern::Any),
+        Some((name, variant)) => (name, VariantPattern::Named(variant)),
+        None => (text, VariantPattern::Any),
     }
 }
 
@@ -34,7 +34,7 @@ pub(super) fn category(text: &str) -> (String, VariantPattern) {
 ///
 /// # Errors
 /// [`GrammarError::Template`] for brackets that do not close and arguments that are not a number from 1 to `arity`.
-pub(super) fn read(text: &str, arity: usize) -> Result<Vec<TemplateElement>, GrammarError> {
+pub(super) fn read(text: &str, arity: usize) -> Result<Vec<TemplateElement<'_>>, GrammarError> {
     let fault = |why: &'static str| GrammarError::Template {
         template: text.to_owned(),
         why,
@@ -74,12 +74,12 @@ mod tests {
 
     #[test]
     fn templates_are_words_arguments_and_words_that_agree() {
-        let named = |name: &str| VariantPattern::Named(name.to_owned());
+        let named = VariantPattern::Named;
         assert_eq!(
             read("{1.n} [be.n] on {2}", 2).unwrap(),
             [
                 TemplateElement::Argument(0, named("n")),
-                TemplateElement::Inflected("be".to_owned(), named("n")),
+                TemplateElement::Inflected("be", named("n")),
                 TemplateElement::Word("on".to_owned()),
                 TemplateElement::Argument(1, VariantPattern::Any),
             ]
