@@ -11,6 +11,7 @@ use crate::form::{Description, Noun};
 use crate::geometry::triangle_area_m2;
 use crate::kind_noun::{KindNoun, kind_nouns};
 use crate::material_family::family_of;
+use crate::noun_by_size::noun_by_size;
 use crate::size::SizeClass;
 use crate::truth::{Truth, UndecidedReason};
 use dwell_scene::material::{Substance, library};
@@ -19,10 +20,6 @@ use glam::Vec3;
 
 /// Share of the surface, and of what is seen of it, from which a substance gives a thing its adjective.
 const MADE_OF_SHARE: f32 = 0.5;
-/// Height below which what files call a wardrobe is a cabinet, m: nothing hangs in it.
-const LEAST_WARDROBE_M: f32 = 1.3;
-/// Height from which shelves are a piece of furniture rather than a board, m.
-const LEAST_SHELVING_M: f32 = 0.6;
 /// Share of what is seen of a thing from which somebody may name a colour beside its main one.
 const TRACE_SHARE: f32 = 0.03;
 /// Share of what is seen of a thing from which its frame gives it its colour, where the rest is clear.
@@ -73,17 +70,13 @@ impl ObjectFacts {
             category.is_some_and(|row| row.name == "curtain") && is_in_two_panels(house, id);
         let kind = kind.or_else(|| kind_nouns().get("curtain_pair").filter(|_| is_pair));
         let extents_m = own_box(house, id).size();
-        let is_low = extents_m.y < LEAST_WARDROBE_M;
-        let is_low_shelf = extents_m.y < LEAST_SHELVING_M;
+        let by_size = category.and_then(|row| noun_by_size(row, extents_m));
         let (noun, plural) = match (kind, category) {
-            (None, Some(row)) if is_low && row.name == "wardrobe_cabinet" => {
-                singular_and_plural("cabinet")
-            }
-            (None, Some(row)) if !is_low_shelf && row.name == "shelving" => {
-                singular_and_plural("shelving unit")
-            }
             (Some(kind), _) => (kind.singular.to_owned(), kind.plural.to_owned()),
-            (None, Some(row)) => (row.singular.to_owned(), row.plural.to_owned()),
+            (None, Some(row)) => by_size.map_or_else(
+                || (row.singular.to_owned(), row.plural.to_owned()),
+                singular_and_plural,
+            ),
             (None, None) => unknown_noun(&object.category),
         };
         let (noun, plural) = match noun.as_str() {
@@ -323,6 +316,10 @@ impl ObjectFacts {
         let classes = ["door", "window", "curtain", "blinds"];
         self.category
             .is_some_and(|row| classes.contains(&row.nyu40_name))
+    }
+
+    pub(crate) fn is_window(&self) -> bool {
+        self.category.is_some_and(|row| row.name == "window")
     }
 
     /// Returns whether it closes or frames a way between rooms.

@@ -24,6 +24,7 @@ mod kind_noun;
 pub mod language;
 mod line_of_sight;
 mod material_family;
+mod noun_by_size;
 mod noun_index;
 mod open_passages;
 pub mod predicates;

@@ -11,7 +11,7 @@ use crate::predicates;
 use crate::refer::room_phrase;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::view::{Sighting, ViewSurvey, refer_in_view};
-use dwell_scene::{ObjectId, RoomId, StructureKind};
+use dwell_scene::{Aabb, ObjectId, RoomId, StructureKind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -25,8 +25,10 @@ const LEAST_COUNTED: [f32; 2] = [LEAST_SHARE / 3.0, 0.1];
 const LEAST_SURFACE: f32 = 0.03;
 /// Share of the picture from which a thing is told with its place among others.
 const LEAST_ANCHOR: f32 = 0.01;
-/// Distance up to which things are told by their place to each other, m.
-const MAX_BESIDE_M: f32 = 1.5;
+/// Distance up to which things are told by their place to each other, m: farther ones are side by side in the picture alone.
+const MAX_BESIDE_M: f32 = 1.0;
+/// Number of kinds of things that one sentence lists.
+const MAX_LISTED: usize = 6;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
 const MAX_OVERLAP: f32 = 0.1;
 
@@ -367,6 +369,12 @@ impl ViewTeller<'_, '_> {
         let near: Vec<&(ObjectId, Description)> =
             before.iter().filter(|(other, _)| near(*other)).collect();
         for name in RELATIONS {
+            let on_rug = |other: ObjectId| {
+                let pair = [object, other];
+                let [own, mark] = pair.map(|id| self.scene().extent(id).bounds);
+                pair.iter().any(|id| self.scene().facts(*id).is_rug())
+                    && overlap_in_plan(&own, &mark)
+            };
             let held = |other: ObjectId| {
                 let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
                 let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
@@ -374,6 +382,8 @@ impl ViewTeller<'_, '_> {
                     "above" => true,
                     "left_of" | "right_of" if self.is_wide(object) => false,
                     "left_of" | "right_of" if !self.is_beside_in_picture(object, other) => false,
+                    // Furniture that stands on a rug in part is not beside it, nor is the rug under it.
+                    "next_to" | "under" if on_rug(other) => false,
                     // A chair at a table is not under it.
                     "under" => own.max.y < mark.max.y,
                     // A lamp on the ceiling is not to the left of a chair.
@@ -415,7 +425,7 @@ impl ViewTeller<'_, '_> {
                 }
                 None => self.items(objects, |_| true),
             };
-            items.truncate(kinds);
+            items.truncate(kinds.min(MAX_LISTED));
             kinds -= items.len();
             let side = side.map(|side| Modifier::new(side, []));
             let place: Vec<Modifier> = side.into_iter().chain([seen.clone()]).collect();
@@ -484,6 +494,14 @@ impl ViewTeller<'_, '_> {
             before.push((object, subject));
         }
     }
+}
+
+/// Returns whether two boxes have ground in common.
+fn overlap_in_plan(one: &Aabb, other: &Aabb) -> bool {
+    one.min.x < other.max.x
+        && other.min.x < one.max.x
+        && one.min.z < other.max.z
+        && other.min.z < one.max.z
 }
 
 /// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
