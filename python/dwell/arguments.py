@@ -286,6 +286,14 @@ def text(name: str, value: object) -> str:
     return value
 
 
+def dwell_version(name: str, value: object) -> str:
+    """A version of dwell, such as ``"0.2.0"``."""
+    found = text(name, value)
+    if not re.fullmatch(r"[0-9]+\.[0-9]+\.[0-9]+[0-9A-Za-z.+-]{0,40}", found):
+        raise ConfigError(f"{name} is {quoted(found, 60)}; expected a version of dwell")
+    return found
+
+
 def choice(name: str, value: object, allowed: Sequence[str]) -> str:
     """One of several words."""
     # Before they are compared: an array compares each of its elements.

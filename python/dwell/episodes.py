@@ -17,6 +17,7 @@ from dwell import ConfigError, MeasuredDataError, __version__, _native, argument
 from dwell.arguments import (
     allowed_values,
     boolean,
+    dwell_version,
     finite_number,
     integer_in_range,
     mapping,
@@ -369,7 +370,7 @@ _HEADER_CHECKS: dict[str, Callable[[str, object], Any]] = {
     "seed": integer_in_range,
     "count": integer_in_range,
     "shard": _shard,
-    "made_by": text,
+    "made_by": dwell_version,
 }
 _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "episode_id": text,

@@ -149,8 +149,9 @@ class Evaluation:
         self._is_own = self._name not in BASELINES and not self._name.startswith("dwell.")
         usual = {row["name"]: row["schema"]["default"] for row in settings()["StepSizes"]}
         whole_stride = {**usual, **({} if stride is None else dict(stride))}
-        #: The expert's actions were counted with the usual steps, as discrete ones.
-        self._is_as_counted = whole_stride == usual and action_mode == "discrete"
+        #: Whether the actions of an expert compare: they were counted with the usual steps, as
+        #: discrete ones.
+        self.counts_expert = whole_stride == usual and action_mode == "discrete"
         #: What the result says beside its numbers.
         self.about: dict[str, Any] = {
             "format": _FORMAT,
@@ -204,7 +205,7 @@ class Evaluation:
             UsageError: A sensor of one's own called ``sys.exit``.
             ConfigError: Its action is none of the environment's; the message names the step.
         """
-        if not self._is_as_counted:
+        if not self.counts_expert:
             one = dataclasses.replace(one, expert_actions=None)
         observation, info = self.env.reset(seed=0, options=self.options(one))
         reset = getattr(self._policy, "reset", None)

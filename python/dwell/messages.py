@@ -10,7 +10,9 @@ import re
 from dwell._native import DwellError
 
 #: What commands a terminal or turns the direction of writing, and what is no text at all.
-_COMMANDS = re.compile("[\x00-\x08\x0b-\x1f\x7f-\x9f\u202a-\u202e\u2066-\u2069\ud800-\udfff]")
+_COMMANDS = re.compile(
+    "[\x00-\x08\x0b-\x1f\x7f-\x9f\u061c\u200e\u200f\u202a-\u202e\u2066-\u2069\ud800-\udfff]"
+)
 #: A word of which the beginning alone is shown.
 _LONG_WORD = re.compile(r"(\S{200})\S{100,}")
 #: The most characters of a message, and how many of the beginning and of the end of a longer one

@@ -176,12 +176,29 @@ def policy_of(policy: object, env: DwellEnv) -> Policy:
                 "a function of that module that makes a policy"
             )
     if isinstance(made, type | types.FunctionType | types.MethodType):
+        if needed := _needed_arguments(made):
+            raise ConfigError(
+                f"policy {name} is made with {needed}; expected a class or function that makes one "
+                "without arguments"
+            )
         with naming_policy(name, "when it was made"):
             made = made()
     if not callable(getattr(made, "act", None)) or inspect.isclass(made):
         raise ConfigError(f"policy is {quoted(made)}; expected an object with act(observation)")
     chosen: Policy = made
     return chosen
+
+
+def _needed_arguments(maker: Callable[..., Any]) -> str:
+    """The arguments without which a maker cannot be called, as ``"a, b"``."""
+    try:
+        parameters = inspect.signature(maker).parameters.values()
+    except (TypeError, ValueError):
+        # What is written in C may not tell.
+        return ""
+    rest = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
+    needed = [one for one in parameters if one.default is one.empty and one.kind not in rest]
+    return ", ".join(one.name for one in needed)
 
 
 def _import(policy: str) -> None:

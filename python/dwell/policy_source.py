@@ -10,6 +10,8 @@ import sysconfig
 import types
 from collections.abc import Iterator
 
+from dwell import ConfigError
+from dwell.arguments import quoted
 from dwell.files import open_file
 
 #: Where modules lie that are not the policy's own.
@@ -30,6 +32,9 @@ def source_hash(given: object, made: object) -> str | None:
     Returns:
         64 hexadecimal digits; ``None`` where there is no source to read, as in an interactive
         session.
+
+    Raises:
+        ConfigError: ``identity`` is no text.
     """
     roots = _module_names(given, made)
     files: set[tuple[str, str]] = set()
@@ -42,8 +47,10 @@ def source_hash(given: object, made: object) -> str | None:
     if not files:
         return None
     identity = getattr(made, "identity", "")
+    if not isinstance(identity, str):
+        raise ConfigError(f"the policy's identity is {quoted(identity)}; expected a text")
     rows = [f"{name} {digest}" for name, digest in sorted(files)]
-    rows.append(identity if isinstance(identity, str) else "")
+    rows.append(identity)
     return hashlib.sha256("\n".join(rows).encode(errors="replace")).hexdigest()
 
 

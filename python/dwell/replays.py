@@ -6,7 +6,7 @@ import dataclasses
 import hashlib
 import json
 import os
-from collections.abc import Callable, Container, Iterator, Mapping, Sequence
+from collections.abc import Callable, Iterator, Mapping, Sequence
 from contextlib import contextmanager
 from typing import TYPE_CHECKING, Any
 
@@ -21,6 +21,7 @@ from dwell import (
 )
 from dwell.arguments import (
     boolean,
+    dwell_version,
     from_json,
     instance_of,
     integer_in_range,
@@ -43,6 +44,7 @@ from dwell.replay_agents import (
     engine_steps,
     scripted_places,
 )
+from dwell.replay_sensors import picture_faults, without_pictures
 from dwell.stated_episodes import checked_episode
 
 if TYPE_CHECKING:
@@ -171,7 +173,7 @@ class Replay:
                 hashes=tuple(_hash_list("hashes", row["hashes"])),
                 instruction=text("instruction", row["instruction"]),
                 success=boolean("success", row["success"]),
-                made_by=text("made_by", row["made_by"]),
+                made_by=dwell_version("made_by", row["made_by"]),
                 stated=checked_episode("stated", row["stated"]) if "stated" in row else None,
                 agents=tuple(
                     ReplayAgent.of_row(f"agents[{k}]", one)
@@ -374,7 +376,7 @@ class Replay:
                 f"this episode was played with {[*self.parts] or 'no parts in Python'}, given are "
                 f"{given or 'none'}; task= and reward= take them"
             )
-        config = _without_pictures(self._settings())
+        config = without_pictures(self._settings())
         if renderer is not None:
             world = mapping("config: world", config.get("world", {}))
             config["world"] = {**world, "renderer": renderer}
@@ -471,6 +473,8 @@ class Replay:
             for name, agent in moment.agents.items():
                 if not agent.acts:
                     ended.setdefault(name, moment.step)
+            if moment.step == 0:
+                yield from picture_faults(self._settings(), moment.world.house)
             if moment.step == 0 and moment.instruction != self.instruction:
                 yield (
                     f"instruction: the file states {quoted(self.instruction)}, "
@@ -486,54 +490,6 @@ class Replay:
             yield f"success: the file states {self.success}, played it is {moment.success}"
         if self.agents:
             yield from _agent_differences(self.agents, moment.agents, ended)
-
-
-def _without_pictures(config: dict[str, Any]) -> dict[str, Any]:
-    """The settings without sensors of pictures: no bit of a world depends on them.
-
-    What remains is heard or felt. Who plays an episode again looks at the world itself.
-
-    Raises:
-        ConfigError: The kind of a sensor is no text.
-    """
-    pictures = {row["name"] for row in _native.sensors() if row["picture_style"] is not None}
-
-    def kept(row: object, at: str) -> object:
-        if not isinstance(row, dict) or not isinstance(row.get("sensors"), list):
-            return row
-        sensors = enumerate(row["sensors"])
-        return row | {"sensors": [own for k, own in sensors if not shown(own, f"{at}sensors[{k}]")]}
-
-    def shown(row: object, at: str) -> bool:
-        # The engine says which sensor, and not that it is the kind.
-        return isinstance(row, dict) and text(f"{at}.kind", row.get("kind")) in pictures
-
-    general = config.get("task", "InstructionFollowing")
-    usual = {row["name"]: [{"kind": kind} for kind in row["sensors"]] for row in _native.tasks()}
-    agents = config.get("agents")
-    if isinstance(agents, list) and config.get("sensors") is None:
-        # Whose sensors nobody chose has those of its task.
-        agents = [
-            {**row, "sensors": usual[row.get("task", general)]}
-            if isinstance(row, dict)
-            and row.get("sensors") is None
-            and _is_name_in(usual, row.get("task", general))
-            else row
-            for row in agents
-        ]
-    elif config.get("sensors") is None and _is_name_in(usual, general):
-        config = config | {"sensors": usual[general]}
-    if isinstance(agents, list):
-        config = config | {
-            "agents": [kept(row, f"config: agents[{k}].") for k, row in enumerate(agents)]
-        }
-    result = kept(config, "config: ")
-    return result if isinstance(result, dict) else config
-
-
-def _is_name_in(known: Container[str], found: object) -> bool:
-    """Returns whether a value of a file is one of these names; what is no name the engine tells."""
-    return isinstance(found, str) and found in known
 
 
 def _agent_differences(
@@ -583,7 +539,7 @@ _CHECKS: dict[str, Callable[[str, object], Any]] = {
     "hashes": _hash_list,
     "instruction": text,
     "success": boolean,
-    "made_by": text,
+    "made_by": dwell_version,
 }
 
 

@@ -9,6 +9,7 @@ from typing import Any
 from dwell import ConfigError
 from dwell.arguments import (
     boolean,
+    dwell_version,
     finite_number,
     integer_in_range,
     mapping,
@@ -92,7 +93,7 @@ _NUMBER = _or_none(finite_number)
 _ABOUT: dict[str, _Check] = {
     "format": text,
     "version": _count(),
-    "made_by": _matching(r"[0-9]+\.[0-9]+\.[0-9]+[0-9A-Za-z.+-]{0,40}", "a version of dwell"),
+    "made_by": dwell_version,
     "policy": text,
     "policy_source": _or_none(_matching(f"{_HEX}{{64}}", "64 hexadecimal digits")),
     "task": _mapping_of({"name": text, "version": _count(), "settings": mapping}),

@@ -93,7 +93,7 @@ def compared(
             if name not in _TOLD and not is_same(value, row[name]):
                 told.append(_differs(name, row[name], value))
         told += _policy(row, job, stated, policy)
-        told += origin_differences(row, files)
+        told += origin_differences(row, files, counts_expert=job.counts_expert)
         told += _specs(row, job)
         rows: list[dict[str, Any]] = row["episodes"]
         played: list[dict[str, Any]] = []
@@ -113,6 +113,10 @@ def compared(
 def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
     """The evaluation that a result is of."""
     task = result["task"]
+    # Experts are counted for all episodes of a file, or for none.
+    is_counted = len(result["episode_files"]) < 2 and any(
+        row["expert_actions"] is not None for row in result["episodes"]
+    )
     episodes = [
         Episode(
             episode_id=f"{row['scene_id']}#{row['seed']}",
@@ -121,7 +125,7 @@ def _job(result: Mapping[str, Any], stated: _Stated) -> Evaluation:
             start_position=(0.0, 0.0, 0.0),
             start_yaw_deg=0.0,
             expert_actions=row["expert_actions"],
-            expert_success=row["expert_actions"] is not None,
+            expert_success=is_counted or row["expert_actions"] is not None,
             **(checked_episode("stated", row.get("stated", {})) or {}),
         )
         for row in result["episodes"]
@@ -279,7 +283,7 @@ def _asked(job: Evaluation, one: Episode) -> Episode:
     """An episode with what it asks, as it is found when it begins, and what its expert needs."""
     _, info = job.env.reset(seed=0, options=job.options(one))
     expert: dict[str, Any] = {}
-    if one.expert_actions is not None:
+    if one.expert_success:
         most = int(task_of(job.about["task"]["name"])["max_steps"])
         expert = expert_run(job.env._runner, most)
     return dataclasses.replace(

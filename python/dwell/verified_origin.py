@@ -20,12 +20,15 @@ _MOST_PLACES = 50_000
 _MOST_HOUSES = 4
 
 
-def origin_differences(result: Mapping[str, Any], files: EpisodeSet | None) -> Iterator[str]:
+def origin_differences(
+    result: Mapping[str, Any], files: EpisodeSet | None, *, counts_expert: bool
+) -> Iterator[str]:
     """What is said of houses, seed and files of episodes and is not so, a sentence each.
 
     Args:
         result: A result whose fields are of their kinds.
         files: The files of episodes that are given with it.
+        counts_expert: Whether a result holds the actions that these files count of the expert.
     """
     try:
         houses = HouseList(result["houses"])
@@ -39,7 +42,7 @@ def origin_differences(result: Mapping[str, Any], files: EpisodeSet | None) -> I
                 f"{quoted(scene)} of scene_ids"
             )
     if files is not None:
-        yield from _of_files(result, files)
+        yield from _of_files(result, files, counts_expert=counts_expert)
     elif result["seed"] is None:
         if len(result["episode_files"]) < 2:
             yield "seed: the file states None; only episodes of several files have no seed of all"
@@ -53,7 +56,9 @@ def origin_differences(result: Mapping[str, Any], files: EpisodeSet | None) -> I
         )
 
 
-def _of_files(result: Mapping[str, Any], files: EpisodeSet) -> Iterator[str]:
+def _of_files(
+    result: Mapping[str, Any], files: EpisodeSet, *, counts_expert: bool
+) -> Iterator[str]:
     """What is not as in the files of episodes that are given."""
     given = [{"name": os.path.basename(file), "sha256": file_digest(file)} for file in files.files]
     if [row["sha256"] for row in given] != [row["sha256"] for row in result["episode_files"]]:
@@ -74,6 +79,12 @@ def _of_files(result: Mapping[str, Any], files: EpisodeSet) -> Iterator[str]:
     if ids != stated:
         k = next((k for k, (a, b) in enumerate(zip(ids, stated, strict=False)) if a != b), 0)
         yield f"episodes: those of the files are others, or in another order, from number {k} on"
+        return
+    for k, (row, one) in enumerate(zip(result["episodes"], files.episodes, strict=True)):
+        count = one.expert_actions if counts_expert and one.expert_success else None
+        if row["expert_actions"] != count:
+            at, own = f"episodes[{k}].expert_actions", row["expert_actions"]
+            yield f"{at}: the file states {quoted(own)}, the episodes' {quoted(count)}"
 
 
 def _come_from(result: Mapping[str, Any], houses: HouseList) -> bool:

@@ -186,7 +186,7 @@ def _row(at: str, given: str | Mapping[str, Any]) -> dict[str, Any]:
         meant = f"did you mean {' or '.join(near)}? " if near else ""
         raise ConfigError(f"{at}: no law {quoted(name)}; {meant}allowed are {', '.join(_laws())}")
     law = _laws()[name]
-    if "params" not in row:
+    if not row.get("params"):
         if law["usual"] is None:
             first = law["params"][0]
             example = {name: {first["name"]: first["plausible"][1]}}

@@ -154,7 +154,7 @@ fn kind(py: Python<'_>, name: &str, message: String) -> PyErr {
 /// become `\u001b` and the like. They come from names in strangers' files.
 pub(crate) fn printable(text: String) -> String {
     let commands = |c: char| {
-        let turns = matches!(c, '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
+        let turns = matches!(c, '\u{61c}' | '\u{200e}' | '\u{200f}' | '\u{202a}'..='\u{202e}' | '\u{2066}'..='\u{2069}');
         turns || c.is_control() && !matches!(c, '\n' | '\t')
     };
     if !text.contains(commands) {

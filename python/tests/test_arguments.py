@@ -180,6 +180,7 @@ def test_laws_are_given_in_short_or_in_full(shoebox: dwell.House, laws: Any) -> 
             "give some, as laws={'wind': {'x_m_s': 1.0}}",
         ),
         ("", "laws[0]: no law ''; allowed are drag"),
+        ([{"id": "latency", "params": {}}], "laws[0]: latency without numbers does nothing"),
         (["drag", "latency"], "laws[1]: latency without numbers does nothing"),
         ({"latency": {}}, "latency has delay_s (0 to 2 s, plausible 0.002 to 0.15)"),
         ({"drag": {"cd": 1}}, "laws.drag: drag has no parameter 'cd'; did you mean c_d? drag has"),

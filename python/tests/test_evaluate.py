@@ -18,6 +18,7 @@ from dwell.cli.job_journal import Journal
 from dwell.envs import DwellEnv
 from dwell.episode_maker import EpisodeMaker
 from dwell.evaluation import differences, evaluate, read_result, write_result
+from dwell.evaluation_summary import summary
 from dwell.played_actions import packed, unpacked
 
 pytestmark = pytest.mark.usefixtures("open_once")
@@ -248,6 +249,18 @@ def test_actions_that_are_none_are_told(count: str, result: dict[str, Any]) -> N
     other["episodes"][0]["actions"] = f"1*{count}"
     (told,) = (one for one in differences(other) if one.startswith("episodes[0].actions"))
     assert "more than 10000000 actions" in told or "expected NUMBER or NUMBER*COUNT" in told
+
+
+@pytest.mark.long
+def test_an_expert_that_is_left_out_is_told(made: Path, result: dict[str, Any]) -> None:
+    """The mean of SNA would be of the other episodes alone."""
+    other = json.loads(json.dumps(result))
+    other["episodes"][0].update(expert_actions=None, sna=None)
+    means = summary(other["episodes"])
+    other.update({name: means[name] for name in means if name in other})
+    for files in (None, made):
+        told = differences(other, episodes=files)
+        assert [one for one in told if one.startswith("episodes[0].expert_actions")], told
 
 
 @pytest.mark.long

@@ -130,6 +130,18 @@ def test_what_a_policy_says_of_itself_is_part_of_its_source() -> None:
     Weighted.identity = "weights 2"
     assert evaluate(Weighted, sensors=["gps"], **ONE)["policy_source"] != first
     assert evaluate("stop", **ONE)["policy_source"] is None
+    Weighted.identity = 3  # type: ignore[assignment] # the fault
+    with pytest.raises(dwell.ConfigError, match="the policy's identity is 3; expected a text"):
+        evaluate(Weighted, sensors=["gps"], **ONE)
+
+
+def test_a_maker_that_needs_arguments_is_refused() -> None:
+    def make(weights: str, *rest: object, best: bool, usual: int = 1) -> object:
+        del weights, rest, best, usual
+        return object()
+
+    with pytest.raises(dwell.ConfigError, match=r"make is made with weights, best; expected"):
+        evaluate(make, sensors=["gps"], **ONE)
 
 
 FAULTY = """

@@ -187,6 +187,16 @@ def test_arrays_of_hdf5_that_differ_in_length_are_not_cut(tmp_path: Path) -> Non
             imported(tmp_path, HDF5, "demos.hdf5")
 
 
+def test_an_array_of_hdf5_that_is_too_large_is_named(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "demos.hdf5"
+    with h5py.File(path, "w") as file:
+        # Of fill values, so that it takes no room.
+        file.create_dataset("data/demo_0/t", shape=(68_000_000,), dtype="f8", chunks=(1_000_000,))
+    with pytest.raises(ValueError, match=r"demos\.hdf5: '/data/demo_0/t' has 68000000 numbers; at"):
+        open_table(path, "data")
+
+
 def test_damaged_hdf5_is_refused_by_a_sentence_with_its_name(tmp_path: Path) -> None:
     whole, damaged = tmp_path / "whole.hdf5", tmp_path / "damaged.hdf5"
     h5py = pytest.importorskip("h5py")

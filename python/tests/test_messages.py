@@ -48,7 +48,7 @@ def test_a_command_names_the_file_that_it_cannot_read(
     assert told == f"dwell {arguments[0]}: {link}: Input/output error\n"
 
 
-ESC = "\x1b[31m\u202ename"
+ESC = "\x1b[31m\u202e\u200f\u061cname"
 
 
 @pytest.fixture
@@ -73,7 +73,7 @@ def junk(tmp_path: Path) -> Path:
     ],
 )
 def test_no_error_has_what_commands_a_terminal(call: Callable[[Path], object], junk: Path) -> None:
-    with pytest.raises(Exception, match=r"\\u001b\[31m\\u202ename") as caught:
+    with pytest.raises(Exception, match=r"\\u001b\[31m\\u202e\\u200f\\u061cname") as caught:
         call(junk)
     assert str(caught.value).isprintable()
 
@@ -84,7 +84,7 @@ def test_an_error_of_a_user_is_printable_and_keeps_what_it_was_made_of() -> None
 
     error = MyError(f"no {ESC}", 1)
     assert error.args == (f"no {ESC}", 1)
-    assert str(MyError(f"a {ESC}\nb\t")) == "a \\u001b[31m\\u202ename\nb\t"
+    assert str(MyError(f"a {ESC}\nb\t")) == "a \\u001b[31m\\u202e\\u200f\\u061cname\nb\t"
     assert str(dwell.ConfigError()) == ""
 
 

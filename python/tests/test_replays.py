@@ -353,6 +353,25 @@ def test_forged_check_sums_do_not_help(
         assert told.startswith(said)
 
 
+@pytest.mark.parametrize("settings", [{"width": "big"}, {"height": -1}, {"preset": "dark"}])
+def test_sensors_of_pictures_that_nobody_takes_are_told(
+    instructed: Path, settings: dict[str, Any]
+) -> None:
+    replay = dwell.Replay.read(instructed)
+    sensors = [{"kind": "gps"}, {"kind": "rgb", "settings": settings}]
+    config = json.dumps({**json.loads(replay.config), "sensors": sensors})
+    # They change no bit, so that nothing else would tell.
+    told = dataclasses.replace(replay, config=config, sums=None).differences()
+    assert [one for one in told if one.startswith("config: sensors[1]: ")], told
+
+
+def test_it_is_of_a_version_of_dwell(instructed: Path, tmp_path: Path) -> None:
+    row = json.loads(instructed.read_text("utf-8"))
+    (tmp_path / "a.replay").write_text(json.dumps({**row, "made_by": "somebody"}), "utf-8")
+    with pytest.raises(dwell.DwellError, match="made_by is 'somebody'; expected a version of dw"):
+        dwell.Replay.read(tmp_path / "a.replay")
+
+
 def test_errors_name_the_file(file: Path, tmp_path: Path) -> None:
     nowhere = tmp_path / "nowhere.replay"
     for path in (nowhere, tmp_path):

@@ -182,3 +182,56 @@ def test_laws_that_change_no_sound_are_told(caplog: pytest.LogCaptureFixture) ->
     house = dwell.House.shoebox((4.0, 2.5, 3.0))
     dwell.AcousticScene(house, laws={"drag": {"c_d": 0.5}, "source_gain": {"gain_db": 3.0}})
     assert caplog.messages == ["laws: drag: no law of sound; an AcousticScene is as without"]
+
+
+def dead_room(height_m: float | None = None) -> dwell.House:
+    """A room without reflections; with a mug on a pillar of this height, 1 m before the agent."""
+    plan = dwell.House.shoebox((12.0, 12.0, 12.0), absorption=1.0).edit()
+    if height_m is not None:
+        plan.add_box((0.5, height_m, 0.5), at=(6.0, 0.0, 5.0), name="pillar")
+        plan.add("mug", on="pillar", name="mug")
+    return plan.done()
+
+
+def heard_db(world: dwell.World, steps: int = 20) -> float:
+    """The level at the ears, dB, after the first steps."""
+    blocks = []
+    for _ in range(steps):
+        world.step()
+        blocks.append(world.listen(800))
+    return float(20.0 * np.log10(np.concatenate(blocks[8:], axis=1).std() / 2e-5))
+
+
+@pytest.mark.parametrize("height_m", [0.6, 1.2, 1.6])
+def test_what_is_played_at_a_vessel_is_heard_over_its_rim(height_m: float) -> None:
+    house = dead_room(height_m)
+
+    def level_db(at: str | tuple[float, float, float]) -> float:
+        world = dwell.World(house)
+        world.place_agent((6.0, 0.0, 6.0))
+        world.play("white", at=at, level_db=80.0, loop=True)
+        return heard_db(world)
+
+    mug = dwell.World(house, agents=0).object("mug")
+    x, y, z = mug["center"]
+    above = level_db((x, y + 0.5 * mug["size"][1] + 0.1, z))
+    # A mug above the ears shades a little; from within it, it would be 30 dB.
+    assert level_db("mug") == pytest.approx(above, abs=3.0)
+
+
+def test_sixteen_sources_are_heard_and_more_are_told(caplog: pytest.LogCaptureFixture) -> None:
+    """Each has the same samples, so that pressures add up."""
+    house = dead_room()
+
+    def level_db(count: int) -> float:
+        world = dwell.World(house)
+        world.place_agent((6.0, 0.0, 6.0))
+        for _ in range(count):
+            world.play("white", at=(6.0, 1.25, 4.0), level_db=50.0, loop=True)
+        return heard_db(world)
+
+    one = level_db(1)
+    assert level_db(16) == pytest.approx(one + 20.0 * np.log10(16.0), abs=0.2)
+    assert "more sources than the sound preset follows" not in caplog.text
+    assert level_db(17) == pytest.approx(one + 20.0 * np.log10(16.0), abs=0.2)
+    assert "more sources than the sound preset follows" in caplog.text

@@ -108,6 +108,13 @@ def test_records_outside_of_the_data_set_are_not_read(folder: Path, tmp_path: Pa
         (lambda row: row["things"][0].update(box=[-1, 0, 2, 1]), r"things\[0\]\.box is .*64 x 64"),
         (lambda row: row["things"][0]["mask"].update(size=[9, 64]), r"mask\.size is .*\[64, 64\]"),
         (lambda row: row["things"][0]["mask"].pop("counts"), r"mask\.counts is None"),
+        *(
+            (
+                lambda row, runs=runs: row["things"][0]["mask"].update(counts=runs),
+                r"counts is .*run",
+            )
+            for runs in ("!!!", "", "0", "o" * 40, "P")
+        ),
         (lambda row: row["things"].append(row["things"][0]), "as that of a thing before it"),
         (lambda row: row["questions"].append({}), r"questions\[\d+\]\.text is None"),
         (lambda row: row.pop("camera"), "field 'camera' is missing"),

@@ -24,7 +24,7 @@ pub struct StreamConfig {
     /// Rays of new impulse responses in one block, 0 to 10,000,000; updates beyond wait for later blocks, and the old
     /// responses are used until then. Early paths and synthesis of a response count as rays, too. 0: as many as they need.
     pub update_rays: usize,
-    /// Most sources at once; the first in the list win. 1 to 1,000.
+    /// Most sources at once; the first in the list win, and those beyond are silent. 1 to 1,000.
     pub max_sources: usize,
 }
 
@@ -59,7 +59,7 @@ impl StreamConfig {
             tracked_reflections: 6,
             update_share: 0.15,
             update_rays: 0,
-            max_sources: 4,
+            max_sources: 16,
             ..Self::full()
         }
     }

@@ -27,6 +27,7 @@ mod report;
 mod robot;
 pub mod suncg;
 mod toml_text;
+mod unit_factors;
 pub mod urdf;
 mod warning_kind;
 mod writers;

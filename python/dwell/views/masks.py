@@ -2,12 +2,13 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
 from numpy.typing import NDArray
 
-__all__ = ["box", "decode_rle", "encode_rle"]
+__all__ = ["box", "decode_rle", "encode_rle", "run_lengths"]
 
 
 def box(mask: NDArray[np.bool_]) -> list[int]:
@@ -54,7 +55,7 @@ def encode_rle(mask: NDArray[np.bool_]) -> dict[str, Any]:
 def decode_rle(rle: dict[str, Any]) -> NDArray[np.bool_]:
     """The mask, shape (height, width), of what :func:`encode_rle` gives."""
     height, width = rle["size"]
-    counts = _counts_of(rle["counts"])
+    counts = run_lengths(rle["counts"])
     values = np.arange(len(counts)) % 2 == 1
     return np.repeat(values, counts).reshape((height, width), order="F")
 
@@ -77,7 +78,14 @@ def _text_of(counts: list[int]) -> str:
     return "".join(letters)
 
 
-def _counts_of(text: str) -> list[int]:
+def run_lengths(text: str) -> list[int]:
+    """The lengths of runs that a text of :func:`encode_rle` holds.
+
+    Raises:
+        ValueError: It is none of run lengths.
+    """
+    if not re.fullmatch("(?:[P-o]{0,6}[0-O])*", text):
+        raise ValueError("no run lengths")
     counts: list[int] = []
     at = 0
     while at < len(text):

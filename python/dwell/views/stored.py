@@ -24,6 +24,7 @@ from dwell.arguments import (
     text,
 )
 from dwell.files import is_whole, lines, open_file, parse_json, read
+from dwell.views.masks import run_lengths
 from dwell.views.record import IMAGES
 
 __all__ = ["RECORDS", "copy_picture", "picture", "picture_bytes", "records"]
@@ -199,6 +200,19 @@ def _thing(at: str, found: object, size: tuple[int, int]) -> int:
     mask = mapping(f"{at}.mask", own.get("mask"))
     if mask.get("size") != [*size]:
         raise ConfigError(f"{at}.mask.size is {quoted(mask.get('size'))}; expected {[*size]}")
-    text(f"{at}.mask.counts", mask.get("counts"))
+    _check_runs(f"{at}.mask.counts", text(f"{at}.mask.counts", mask.get("counts")), size)
     finite_number(f"{at}.occlusion", own.get("occlusion"))
     return integer_in_range(f"{at}.id", own.get("id"))
+
+
+def _check_runs(at: str, counts: str, size: tuple[int, int]) -> None:
+    """Refuses a text that is no run lengths of a picture of this height and width."""
+    try:
+        runs = run_lengths(counts)
+    except ValueError:
+        runs = []
+    if sum(runs) != size[0] * size[1] or min(runs, default=0) < 0:
+        raise ConfigError(
+            f"{at} is {quoted(counts, 60)}; expected COCO's run lengths of {size[1]} x {size[0]} "
+            "pixels"
+        )

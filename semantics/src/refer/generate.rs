@@ -8,6 +8,7 @@ use crate::predicates;
 use crate::scene::{DistractorSet, ObjectList, SemanticScene};
 use dwell_scene::ObjectId;
 use dwell_scene::interrupt;
+use glam::Vec2;
 use std::collections::BTreeSet;
 use std::rc::Rc;
 
@@ -86,6 +87,7 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
                 || (name == "in" && scene.is_seat_or_bed(landmark))
                 || (name == "next_to" && longest(landmark) < LEAST_LANDMARK * longest(target))
                 || (name == "next_to" && carrier(scene, landmark) != own_carrier)
+                || (name == "next_to" && stands_between(scene, target, landmark))
             {
                 continue;
             }
@@ -106,6 +108,40 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
         }
     }
     found
+}
+
+/// Returns whether a neighbour of a thing stands between it and another one: readers call that the nearer one's neighbour.
+fn stands_between(scene: &SemanticScene<'_>, target: ObjectId, landmark: ObjectId) -> bool {
+    let [from, to] = [target, landmark].map(|id| scene.extent(id).bounds.center());
+    let way = Vec2::new(to.x - from.x, to.z - from.z);
+    let reaches_over = |other: &ObjectId| {
+        let bounds = scene.extent(*other).bounds;
+        // The part of the way that lies between both faces of the box, axis by axis.
+        let part = |start: f32, step: f32, low: f32, high: f32| {
+            if step == 0.0 {
+                return if (low..=high).contains(&start) {
+                    [0.0, 1.0]
+                } else {
+                    [1.0, 0.0]
+                };
+            }
+            let (a, b) = ((low - start) / step, (high - start) / step);
+            [a.min(b), a.max(b)]
+        };
+        let x = part(from.x, way.x, bounds.min.x, bounds.max.x);
+        let z = part(from.z, way.y, bounds.min.z, bounds.max.z);
+        let (enter, leave) = (x[0].max(z[0]).max(0.0), x[1].min(z[1]).min(1.0));
+        enter < leave
+    };
+    let neighbours = scene.neighbours(target).iter();
+    let others = neighbours.filter(|other| **other != landmark && !scene.facts(**other).is_rug());
+    let both = [target, landmark].map(|id| scene.extent(id).bounds);
+    // A chair under the table's edge is before it, not between.
+    let is_apart = |other: &&ObjectId| {
+        let own = scene.extent(**other).bounds;
+        both.iter().all(|bounds| !bounds.intersects(&own))
+    };
+    others.filter(is_apart).any(reaches_over)
 }
 
 /// What a thing stands on or in; `None` on floors, rugs and walls.

@@ -19,6 +19,7 @@ use crate::import::{
 };
 use crate::limits::MAX_IMAGE_BYTES;
 use crate::report::{FileLocation, LoadReport};
+use crate::unit_factors::unit_factors;
 use crate::warning_kind::WarningKind;
 
 /// The images that base colours use, decoded; `ids` has an entry for each image of the file.
@@ -198,7 +199,7 @@ pub(super) fn materials(
             not_finite += 1;
             usual
         };
-        let base_color = pbr.base_color_factor.0.map(|x| finite(x, 1.0));
+        let [r, g, b, a] = pbr.base_color_factor.0.map(|x| finite(x, 1.0));
         let emission = material.emissive_factor.0.map(|x| finite(x, 0.0));
         let roughness = finite(pbr.roughness_factor.0, 1.0);
         let metallic = finite(pbr.metallic_factor.0, 1.0);
@@ -210,9 +211,11 @@ pub(super) fn materials(
             let at = at.field(format_args!("materials[{k}]"));
             report.warn_times(at, damage, not_finite);
         }
+        let at = at.field(format_args!("materials[{k}]"));
+        let factors = [r, g, b, a, roughness, metallic].map(f64::from);
+        let [r, g, b, a, roughness, metallic] = unit_factors(factors, &at, report);
         let texture =
             image_of(json, material).and_then(|image| images.ids.get(image).copied().flatten());
-        let [r, g, b, a] = base_color;
         let opacity = if material.alpha_mode == Checked::Valid(AlphaMode::Blend) {
             a
         } else {
@@ -231,7 +234,7 @@ pub(super) fn materials(
             library().get_or_default(of_look)
         };
         let known = if trusted {
-            DwellMaterialExtras::read(material, &at.field(format_args!("materials[{k}]")), report)
+            DwellMaterialExtras::read(material, &at, report)
         } else {
             DwellMaterialExtras::default()
         };

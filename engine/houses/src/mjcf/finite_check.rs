@@ -74,6 +74,9 @@ pub(super) fn check(node: Node<'_, '_>, at: impl Fn() -> FileLocation) -> Result
         // Of 32 bits, as all numbers of a house.
         let is_bad = |x: f32| x.is_nan() || (finite && x.is_infinite());
         let mut words = attribute.value().split_ascii_whitespace();
+        if attribute.value().trim_ascii().is_empty() {
+            return refuse(node, name, &at(), "numbers", attribute.value());
+        }
         if let Some(word) = words.find(|word| word.parse().map_or(true, is_bad)) {
             return refuse(node, name, &at(), "finite numbers below 3.4e38", word);
         }

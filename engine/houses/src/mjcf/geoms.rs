@@ -9,6 +9,7 @@ use crate::data_root::parent_folder;
 use crate::error::HousesError;
 use crate::report::{FileLocation, LoadReport};
 use crate::robot::{LinkInertia, LinkShape, RobotFileLoader, ShapeGeometry};
+use crate::unit_factors::unit_factors;
 use crate::warning_kind::WarningKind;
 use dwell_scene::{Pose, Texture};
 use std::sync::Arc;
@@ -152,7 +153,7 @@ fn shape(
     Ok(Some(LinkShape {
         link_from_shape,
         geometry: solid,
-        rgba: rgba.map(|rgba| rgba.map(|x| x.clamp(0.0, 1.0) as f32)),
+        rgba: rgba.map(|rgba| unit_factors(rgba, &at.field("rgba"), report)),
         material,
         image,
     }))

@@ -15,6 +15,7 @@ use crate::robot::{
     LinkInertia, LinkShape, Robot, RobotFileLoader, RobotJoint, RobotJointKind, RobotLink,
     ShapeGeometry, check,
 };
+use crate::unit_factors::unit_factors;
 use crate::warning_kind::WarningKind;
 use crate::xml::{self, LineIndex};
 
@@ -180,7 +181,8 @@ impl UrdfReader<'_> {
     fn material(&mut self, node: Node<'_, '_>) -> Result<(), HousesError> {
         if let (Some(name), Some(color)) = (node.attribute("name"), first(node, "color")) {
             let rgba = self.numbers(color, "rgba", [0.8, 0.8, 0.8, 1.0])?;
-            let rgba = rgba.map(|x| x.clamp(0.0, 1.0) as f32);
+            let at = self.place(color).field("rgba");
+            let rgba = unit_factors(rgba, &at, self.report);
             self.colours.insert(name.to_owned(), rgba);
         }
         if first(node, "texture").is_some() {
@@ -363,6 +365,11 @@ impl UrdfReader<'_> {
             _ => None,
         };
         let (effort, velocity) = (of_limit("effort")?, of_limit("velocity")?);
+        for (field, found) in [("effort", effort), ("velocity", velocity)] {
+            if let (Some(limit), Some(found)) = (limit, found.filter(|x| *x < 0.0)) {
+                return self.fault(limit, field, "a number from 0 up", found.to_string());
+            }
+        }
         let dynamics = first(node, "dynamics");
         let of_dynamics = |field: &str| match dynamics {
             Some(dynamics) => Ok(self.numbers(dynamics, field, [0.0])?[0] as f32),

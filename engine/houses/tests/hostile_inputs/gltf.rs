@@ -100,6 +100,17 @@ pub(crate) const CASES: &[Case] = &[
         &["a.glb", "materials[0]", "too large"],
     ),
     warns(
+        "a roughness of 2",
+        |d| {
+            let look = json!({"roughnessFactor": 2.0});
+            put_glb(
+                d,
+                &with(triangle(), "/materials/0/pbrMetallicRoughness", look),
+            )
+        },
+        &["a.glb", "materials[0]", "2, which was brought into it"],
+    ),
+    warns(
         "an image that is cut",
         |d| {
             let mut bytes = Vec::new();

@@ -57,6 +57,16 @@ pub(crate) const URDF_CASES: &[Case] = &[
         &["r.urdf:1", "DTD"],
     ),
     fails(
+        "a negative velocity",
+        |d| urdf(d, "velocity=\"1\"", "velocity=\"-2\""),
+        &["r.urdf:5", "velocity", "from 0 up", "-2"],
+    ),
+    fails(
+        "a negative effort",
+        |d| urdf(d, "effort=\"1\"", "effort=\"-5\""),
+        &["r.urdf:5", "effort", "from 0 up", "-5"],
+    ),
+    fails(
         "another root",
         |d| put(d, "r.urdf", "<sdf/>"),
         &["r.urdf", "<robot>", "<sdf>"],
@@ -174,6 +184,16 @@ pub(crate) const URDF_CASES: &[Case] = &[
 ];
 
 pub(crate) const MJCF_CASES: &[Case] = &[
+    fails(
+        "a mass of nothing",
+        |d| mjcf(d, "mass=\"1\"", "mass=\" \""),
+        &["m.xml:5", "geom.mass", "numbers"],
+    ),
+    warns(
+        "a colour of 7",
+        |d| mjcf(d, "mass=\"1\"", "mass=\"1\" rgba=\"7 0 0 1\""),
+        &["m.xml", "rgba", "7", "0 to 1"],
+    ),
     fails(
         "a file that is cut",
         |d| put(d, "m.xml", &MJCF[..120]),

@@ -6,7 +6,7 @@ use crate::listener::Listener;
 use dwell_acoustics::{ActiveSource, HeadId, Stream};
 use dwell_scene::rays::RayScene;
 use dwell_scene::units::db_spl_from_pa;
-use dwell_scene::{House, State};
+use dwell_scene::{House, Id, State};
 use glam::Vec3;
 
 /// Attenuation by a wall or a closed door when the loudness of a source in another room is estimated, dB.
@@ -25,6 +25,8 @@ pub(super) struct AgentListener {
     /// The newest samples. Shape (channel, length), oldest first.
     pub(super) recent_samples: Vec<f32>,
     pub(super) length: usize,
+    /// Whether the log tells already that some sources are left out.
+    has_told_dropped: bool,
 }
 
 impl AgentListener {
@@ -43,6 +45,7 @@ impl AgentListener {
             head,
             recent_samples: vec![0.0; channels * length],
             length,
+            has_told_dropped: false,
         }
     }
 
@@ -62,8 +65,18 @@ impl AgentListener {
         let active = sort_by_loudness(house, sources, receiver.position());
         let size = self.stream.config().block_samples;
         let mut heard = vec![0.0; self.channels * size];
-        self.stream
+        let report = self
+            .stream
             .render_block(rays, state, &active, &receiver, &mut heard)?;
+        if report.dropped_sources > 0 && !self.has_told_dropped {
+            self.has_told_dropped = true;
+            tracing::warn!(
+                agent = self.listener.agent.index(),
+                heard = self.stream.config().max_sources,
+                left_out = report.dropped_sources,
+                "more sources than the sound preset follows: the loudest are heard"
+            );
+        }
         for (window, block) in self
             .recent_samples
             .chunks_exact_mut(self.length)

@@ -285,7 +285,7 @@ impl WorldSound {
             playing.state.fade.apply(self.rate_hz, &mut signal);
             sources.push(BlockSource {
                 id: playing.state.id,
-                position: nearest_open_air_point(rays, playing.emission_point(house, state)),
+                position: nearest_open_air_point(rays, playing.emission_point(house, rays, state)),
                 signal,
             });
         }

@@ -5,6 +5,7 @@ use crate::air_position::nearest_open_air_point;
 use crate::engines::Engines;
 use crate::error::WorldError;
 use dwell_acoustics::signals::{self, Signal};
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::rays::RayScene;
 use dwell_scene::units::pa_from_db_spl;
 use dwell_scene::{AgentId, AgentState, House, ObjectId, State};
@@ -56,6 +57,11 @@ pub struct PlayRequest {
     /// True if it begins again when it is over.
     pub loops: bool,
 }
+
+/// Least and largest height over an object's top at which what it plays is heard, m.
+const RISE_M: [f32; 2] = [0.03, 0.15];
+/// Distance over the top from which on something counts as above it, m.
+const SURFACE_M: f32 = 1e-3;
 
 /// The middle of a mouth in the space of a head whose origin lies between the eyes, m.
 const MOUTH_IN_HEAD: Vec3 = Vec3::new(0.0, -0.08, -0.1);
@@ -207,8 +213,9 @@ impl Playback {
             || (self.state.stopped && self.state.fade.is_silent())
     }
 
-    /// The point from which it is heard, m: of an object, not from within it, but from above.
-    pub(super) fn emission_point(&self, house: &House, state: &State) -> Vec3 {
+    /// The point from which it is heard, m: of an object, not from within it, but from above, as high over its top as half its width: at
+    /// the rim of a vessel its wall would stand in the way. Where something is right above, it is half as far.
+    pub(super) fn emission_point(&self, house: &House, rays: &RayScene, state: &State) -> Vec3 {
         let SoundPlace::Object(object) = self.state.request.place else {
             return self.position(house, state);
         };
@@ -217,7 +224,15 @@ impl Playback {
         let world_from_mesh = state.part_pose[part].to_affine() * shape.part_from_mesh;
         let bounds = house.meshes[shape.mesh].bounds();
         let bounds = bounds.transformed(&world_from_mesh);
-        bounds.center().with_y(bounds.max.y)
+        let top = bounds.center().with_y(bounds.max.y + SURFACE_M);
+        let size = bounds.size();
+        let [least_m, most_m] = RISE_M;
+        let rise_m = (0.5 * size.x.max(size.z)).clamp(least_m, most_m);
+        let up = Ray::new(top, Vec3::Y).with_range(0.0, 2.0 * rise_m);
+        let free_m = rays
+            .closest(&up, RayMask::EAR)
+            .map_or(2.0 * rise_m, |hit| hit.distance_m);
+        top + Vec3::Y * (0.5 * free_m)
     }
 
     /// Returns its position now, m.

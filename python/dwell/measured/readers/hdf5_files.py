@@ -188,6 +188,11 @@ def _arrays(h5py: Any, path: Path, group: Any, *, deep: bool = True) -> dict[str
                 if deep:
                     look(inner, f"{prefix}{name}/", depth + 1)
             elif isinstance(inner, h5py.Dataset) and _is_column(inner):
+                if inner.size > _MAX_VALUES:
+                    raise ValueError(
+                        f"{path}: {inner.name!r} has {inner.size} numbers; at most {_MAX_VALUES} "
+                        "are read: cut it into parts, or leave rows out"
+                    )
                 if inner.is_virtual or inner.external:
                     raise ValueError(
                         f"{path}: {inner.name!r} has its values in another file; copy them into it"
@@ -202,8 +207,7 @@ def _is_column(array: Any) -> bool:  # noqa: ANN401
     """Whether an array has a row of few numbers a sample."""
     if array.dtype.kind not in "fiub" or array.ndim not in (1, 2) or array.shape[0] < 1:
         return False
-    is_narrow = array.ndim == 1 or 0 < array.shape[1] <= _MAX_WIDTH
-    return bool(array.size <= _MAX_VALUES and is_narrow)
+    return bool(array.ndim == 1 or 0 < array.shape[1] <= _MAX_WIDTH)
 
 
 def _columns(shapes: dict[str, tuple[int, ...]]) -> dict[str, list[str]]:
