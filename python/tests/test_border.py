@@ -514,7 +514,7 @@ def names() -> dict[str, Any]:
             hashes=("a",),
             instruction="x",
             success=False,
-            made_by="y",
+            made_by="0.2.0",
         ),
     }
 

@@ -252,7 +252,7 @@ def names(apartment: dwell.House, tmp_path_factory: pytest.TempPathFactory) -> d
             hashes=("a",),
             instruction="x",
             success=False,
-            made_by="y",
+            made_by="0.2.0",
         ),
         "say": say,
         "SCENE": scene,

@@ -221,7 +221,7 @@ fn the_colour_is_that_of_what_is_seen() {
     assert!(colors[0].1 > 0.5, "{colors:?}");
     let state = State::new(&house);
     let text = describe_house(&semantics.scene(&state), TextOptions::default()).text;
-    assert!(text.contains("an orange and light gray wardrobe"), "{text}");
+    assert!(text.contains("an orange and gray wardrobe"), "{text}");
 }
 
 #[test]
