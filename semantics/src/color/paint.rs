@@ -13,7 +13,7 @@ pub const MENTION_SHARE: f32 = 0.2;
 
 /// Largest distance of its shades from the colour of a sort, in `OKLab`: the grain of oak spreads 0.05 to 0.1 about its mean, neighbours
 /// in a picture lie 0.2 and more apart.
-const SHADE: f32 = 0.15;
+const SHADE: f32 = 0.12;
 /// Share of an image from which one sort of colour is that of the whole.
 const DOMINANT_SHARE: f32 = 0.6;
 /// Share of an image from which a sort of colour is one of a pattern.
@@ -109,8 +109,8 @@ impl MaterialColors {
     }
 }
 
-/// The colours of an image times `base`: the sort that at least [`DOMINANT_SHARE`] of it has, or those of at least [`SORT_SHARE`] and
-/// what is left.
+/// The colours of an image times `base`: the sorts of at least [`SORT_SHARE`] and what is left, or the only one, if at least
+/// [`DOMINANT_SHARE`] has it.
 ///
 /// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
@@ -156,10 +156,10 @@ fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> M
         found.push(ColorShare { linear, share });
     }
     let pattern = (found.len() > 1).then(|| pattern(&shades));
-    let dominant = found.iter().find(|sort| sort.share >= DOMINANT_SHARE);
-    let sorts = if let Some(sort) = dominant {
-        let share = 1.0;
-        vec![ColorShare { share, ..*sort }]
+    let sorts = if let [sort] = found[..]
+        && sort.share >= DOMINANT_SHARE
+    {
+        vec![ColorShare { share: 1.0, ..sort }]
     } else {
         let share = 1.0 - found.iter().map(|sort| sort.share).sum::<f32>();
         found.push(ColorShare {
@@ -344,7 +344,7 @@ mod tests {
                 [250; 3]
             }
         };
-        assert_eq!(words(&image(dots)), ["white"]);
+        assert_eq!(words(&image(dots)), ["white", "red"]);
         let stripes = |x: usize, _| {
             if x % 16 < 8 {
                 [190, 20, 25]

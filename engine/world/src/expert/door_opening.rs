@@ -2,7 +2,7 @@
 
 use crate::world::World;
 use dwell_scene::navigation::{DistanceField, NavCell, NavGrid};
-use dwell_scene::{AgentId, JointKind, ObjectId};
+use dwell_scene::{AgentId, AgentState, JointKind, ObjectId};
 use glam::{Vec2, Vec3, Vec3Swizzles};
 use std::sync::Arc;
 
@@ -23,6 +23,8 @@ pub(super) struct DoorOpening {
     still: u32,
     /// The path to where the leaf does not reach, once it was held up.
     pub(super) distance_to_clear_cells: Option<Arc<DistanceField>>,
+    /// Whether its arm reaches the leaf from there: else it waits there, since a door that was told to open goes on by itself.
+    pub(super) is_within_reach: bool,
 }
 
 impl DoorOpening {
@@ -32,11 +34,27 @@ impl DoorOpening {
             openness: 0.0,
             still: 0,
             distance_to_clear_cells: None,
+            is_within_reach: true,
         }
     }
 
     /// Notes one more order to open: steps aside where the door stands still for long.
     pub(super) fn count_open_request(&mut self, world: &World, grid: &NavGrid, agent: AgentId) {
+        if self.stands_still(world) {
+            let within_reach = cells_clear_of_leaf(world, grid, agent, self.door, true);
+            self.is_within_reach = !within_reach.is_empty();
+            let free = if self.is_within_reach {
+                within_reach
+            } else {
+                cells_clear_of_leaf(world, grid, agent, self.door, false)
+            };
+            self.distance_to_clear_cells =
+                (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
+        }
+    }
+
+    /// Notes one more step; returns whether the door has not moved for long.
+    pub(super) fn stands_still(&mut self, world: &World) -> bool {
         let now = world
             .state()
             .openness(world.house(), self.door)
@@ -46,19 +64,32 @@ impl DoorOpening {
         self.still = if moved { 0 } else { self.still + 1 };
         if self.still > PATIENCE {
             self.still = 0;
-            let free = cells_clear_of_leaf(world, grid, agent, self.door);
-            self.distance_to_clear_cells =
-                (!free.is_empty()).then(|| Arc::new(grid.distance_field(&free)));
+            return true;
         }
+        false
     }
 }
 
-/// Cells on the agent's side of a hinged door from which its arm reaches the leaf and which the leaf does not sweep.
+/// Distance that a body and what it holds reach from its middle, m.
+fn clearance_radius_m(world: &World, agent: &AgentState) -> f32 {
+    let (house, state) = (world.house(), world.state());
+    let held = agent.holding.map_or(0.0, |held| {
+        let bounds = house.object_bounds(state, held);
+        let at = agent.position;
+        let far = (bounds.min - at).abs().max((bounds.max - at).abs());
+        far.xz().length()
+    });
+    held.max(agent.body.radius_m)
+}
+
+/// Cells on the agent's side of a hinged door, from which its arm reaches the leaf or not, and where the leaf meets neither it nor what it
+/// holds.
 fn cells_clear_of_leaf(
     world: &World,
     grid: &NavGrid,
     agent: AgentId,
     door: ObjectId,
+    within_reach: bool,
 ) -> Vec<NavCell> {
     let (house, state) = (world.house(), world.state());
     let hinge = house.joints_of(door).find(|joint| {
@@ -80,6 +111,7 @@ fn cells_clear_of_leaf(
         .map(|corner| (world_from_mesh.transform_point3(*corner).xz() - axis).length())
         .fold(0.0, f32::max);
     let across = (leaf.center().xz() - axis).perp();
+    let clear_m = swept_m + clearance_radius_m(world, agent) + CLEARANCE_M;
     let side = |at: Vec2| (at - axis).dot(across);
     let here = side(agent.position.xz());
     let eye = Vec3::Y * agent.body.eye_height_m;
@@ -89,9 +121,8 @@ fn cells_clear_of_leaf(
         let apart_m = (from.clamp(leaf.min, leaf.max) - from).length();
         let reached = apart_m < agent.body.reach_m - WITHIN_REACH_M;
         let same_side = side(at.xz()) * here > 0.0;
-        let clear_cells_field =
-            (at.xz() - axis).length() > swept_m + agent.body.radius_m + CLEARANCE_M;
-        reached && same_side && clear_cells_field && (at.y - agent.position.y).abs() < 0.5
+        let is_clear = (at.xz() - axis).length() > clear_m;
+        (reached || !within_reach) && same_side && is_clear && (at.y - agent.position.y).abs() < 0.5
     };
     grid.walkable().filter(free).collect()
 }

@@ -118,11 +118,20 @@ impl ShortestPathFollower {
             return None;
         }
         let (door, clear_cells_field) = (opening.door, opening.distance_to_clear_cells.clone());
-        self.opening = Some(opening);
+        let is_within_reach = opening.is_within_reach;
+        let opening = self.opening.insert(opening);
         let agent = *world.state().agents.get(self.agent)?;
         let clear_cells_field = clear_cells_field?;
         if clear_cells_field.at(here)? <= 0.0 {
-            return Some(self.open(world, door));
+            if is_within_reach {
+                return Some(self.open(world, door));
+            }
+            if opening.stands_still(world) {
+                // It begins anew.
+                self.opening = None;
+                return None;
+            }
+            return Some(DiscreteAction::Wait);
         }
         self.follow(&clear_cells_field, &agent, here)
     }

@@ -7,7 +7,7 @@ use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::world::World;
 use dwell_scene::interrupt;
 use dwell_scene::navigation::NavGrid;
-use dwell_scene::{AgentBody, AgentId, ObjectId, ReceptacleKind, RoomId};
+use dwell_scene::{Aabb, AgentBody, AgentId, House, ObjectId, ReceptacleKind, RoomId, State};
 use dwell_semantics::SemanticScene;
 use dwell_semantics::Term;
 use dwell_semantics::form::Description;
@@ -20,6 +20,8 @@ use std::collections::{BTreeMap, BTreeSet};
 const MOST_UNDONE: usize = 4;
 /// Height of a surface below the eyes from which things are put on it, m.
 const BELOW_EYES_M: f32 = 0.15;
+/// Edge of a thing that is imagined on a surface, m.
+const SMALL_M: f32 = 0.1;
 
 /// Several things that are asked for by number, and the room that they are brought to.
 #[derive(Debug)]
@@ -161,7 +163,13 @@ impl StepCandidates {
                 .space_in_part
                 .transformed(&state.part_pose[place.part].to_affine());
             match place.holding {
-                ReceptacleKind::On if space.min.y < eye_y - BELOW_EYES_M => on.push(space.size()),
+                // What stands on a board within a bookcase is in it.
+                ReceptacleKind::On
+                    if space.min.y < eye_y - BELOW_EYES_M
+                        && !is_within(house, state, object, &space) =>
+                {
+                    on.push(space.size());
+                }
                 ReceptacleKind::In if space.min.y < eye_y => within.push(space.size()),
                 _ => {}
             }
@@ -329,4 +337,12 @@ fn is_possible(finder: &mut PlaceFinder<'_>, kind: StepKind, object: ObjectId) -
             finder.is_in_reach(object)
         }
     }
+}
+
+/// Returns whether a small thing in the middle of a level space of an object would be in it rather than on it.
+fn is_within(house: &House, state: &State, object: ObjectId, space: &Aabb) -> bool {
+    let foot = space.center().with_y(space.min.y);
+    let half = Vec3::new(0.5 * SMALL_M, 0.0, 0.5 * SMALL_M);
+    let small = Aabb::new(foot - half, foot + half + Vec3::Y * SMALL_M);
+    house.encloses(state, object, &house.object_bounds(state, object), &small)
 }
