@@ -90,7 +90,11 @@ def compared(
     try:
         job = _job(row, stated)
         for name, value in job.about.items():
-            if name not in _TOLD and not is_same(value, row[name]):
+            if name in _TOLD:
+                continue
+            if isinstance(value, Mapping):
+                told += _parts(name, row[name], value, "played it is")
+            elif not is_same(value, row[name]):
                 told.append(_differs(name, row[name], value))
         told += _policy(row, job, stated, policy)
         told += origin_differences(row, files, counts_expert=job.counts_expert)
@@ -310,17 +314,18 @@ def _with_measures(rows: list[dict[str, Any]], job: Evaluation) -> list[dict[str
     ]
 
 
-def _parts(name: str, stated: object, value: Mapping[str, Any], by: str) -> Iterator[str]:
-    """The parts of a mapping that do not hold, by their places; ``by``: what the mapping is by."""
-    if not isinstance(stated, Mapping) or stated.keys() != value.keys():
-        if not is_same(stated, value):
-            yield _differs(name, stated, value, by)
+def _parts(name: str, stated: object, value: object, by: str) -> Iterator[str]:
+    """The parts of two values that do not hold, by their places; ``by``: what the second is by."""
+    if is_same(stated, value):
         return
-    for key, part in value.items():
-        if isinstance(part, Mapping):
+    if isinstance(value, Mapping) and isinstance(stated, Mapping) and stated.keys() == value.keys():
+        for key, part in value.items():
             yield from _parts(f"{name}.{key}", stated[key], part, by)
-        elif not is_same(stated[key], part):
-            yield _differs(f"{name}.{key}", stated[key], part, by)
+    elif isinstance(value, list) and isinstance(stated, list) and len(stated) == len(value):
+        for k, part in enumerate(value):
+            yield from _parts(f"{name}[{k}]", stated[k], part, by)
+    else:
+        yield _differs(name, stated, value, by)
 
 
 def _differs(name: str, stated: object, found: object, by: str = "played it is") -> str:

@@ -237,8 +237,21 @@ def test_what_an_episode_ended_with_stands_in_final_info() -> None:
     *_, infos = env.step(np.array([0, 1]))
     final = infos["final_info"]
     assert final["_spl"].tolist() == infos["_final_info"].tolist() == [True, False]
-    assert final["distance_to_goal"][0] == infos["distance_to_goal"][0] > 0.0
+    assert final["distance_to_goal"][0] > 0.0
     assert final["path_length"][0] < 0.01
+    # The episode that begins has made no step: what it is called stands beside no end of another.
+    assert infos["_distance_to_goal"].tolist() == infos["_success"].tolist() == [False, True]
+    assert np.isnan(infos["distance_to_goal"]).tolist() == [True, False]
+
+
+def test_what_an_episode_that_begins_has_not_yet_is_no_number() -> None:
+    env = DwellVectorEnv(2, sensors=SMALL)
+    env.reset(seed=0)
+    env.step(np.array([0, 1]))
+    *_, infos = env.step(np.array([1, 1]))
+    for key in ("distance_to_goal", "spl"):
+        assert np.isnan(infos[key]).tolist() == [True, False]
+        assert infos[f"_{key}"].tolist() == [False, True]
 
 
 def test_errors_of_hundreds_of_environments_name_the_first_of_them() -> None:

@@ -179,7 +179,7 @@ def at(*place: str | int, to: object) -> Callable[[dict[str, Any]], None]:
         (at("stride", "forward_m", to=0.2), "episodes[0].state_hash: the file states"),
         (at("scene_ids", to=[]), "scene_ids: the file states []"),
         (at("task", "version", to=7), "task: the result is of version 7 of PointNav"),
-        (at("world", "control_rate_hz", to=10.0), "world: the file states"),
+        (at("world", "control_rate_hz", to=10.0), "world.control_rate_hz: the file states 10.0"),
         (lambda row: row.pop("max_steps"), "max_steps: missing"),
         (at("prize", to=1), "prize: no field of a result"),
         (at("policy", to="expert"), "the policy does"),

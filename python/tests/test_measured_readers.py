@@ -7,6 +7,7 @@ import csv
 import json
 import math
 import shutil
+import zlib
 from pathlib import Path
 from typing import Any
 
@@ -195,6 +196,22 @@ def test_an_array_of_hdf5_that_is_too_large_is_named(tmp_path: Path) -> None:
         file.create_dataset("data/demo_0/t", shape=(68_000_000,), dtype="f8", chunks=(1_000_000,))
     with pytest.raises(ValueError, match=r"demos\.hdf5: '/data/demo_0/t' has 68000000 numbers; at"):
         open_table(path, "data")
+
+
+def test_a_chunk_of_hdf5_that_inflates_without_end_is_refused(tmp_path: Path) -> None:
+    h5py = pytest.importorskip("h5py")
+    path = tmp_path / "demos.hdf5"
+    whole = zlib.compress(bytes(50 << 20), 9)
+    with h5py.File(path, "w") as file:
+        for shuffles in (False, True):
+            name = f"data/demo_{int(shuffles)}/t"
+            options = {"compression": "gzip", "shuffle": shuffles, "fletcher32": shuffles}
+            file.create_dataset(name, data=np.arange(40.0), chunks=(40,), **options)
+    assert len(list(open_table(path, "data").rows)) == 80
+    with h5py.File(path, "r+") as file:
+        file["data/demo_0/t"].id.write_direct_chunk((0,), whole)
+    with pytest.raises(ValueError, match=r"demos\.hdf5: a chunk of '/data/demo_0/t' inflates to mo"):
+        list(open_table(path, "data").rows)
 
 
 def test_damaged_hdf5_is_refused_by_a_sentence_with_its_name(tmp_path: Path) -> None:

@@ -73,9 +73,12 @@ def step_infos(
     """
     infos: dict[str, Any] = {}
     for key in keys:
-        values = np.asarray(answer[key])
-        known = stepped & ~np.isnan(values) if values.dtype.kind == "f" else stepped.copy()
-        infos[key], infos[f"_{key}"] = values, known
+        values = np.array(answer[key])
+        if values.dtype.kind == "f":
+            values[~stepped] = np.nan
+            infos[key], infos[f"_{key}"] = values, ~np.isnan(values)
+        else:
+            infos[key], infos[f"_{key}"] = values, stepped.copy()
     infos["action_error"] = np.array(answer["action_error"], object)
     infos["_action_error"] = stepped.copy()
     if "reply" in answer:

@@ -425,6 +425,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
 
     def stated_episode(self) -> dict[str, Any] | None:
         """What the episode states of its start and goal, where they were not drawn."""
+        self._refuse_closed()
         own = self._stated
         return self._shelf.stated(self._house, self._seed) if own is None else own
 

@@ -427,7 +427,12 @@ class DwellVectorEnv(VectorCalls, VectorEnv[dict[str, Any], Any, NDArray[Any]], 
             }
         final_info: dict[str, Any] = {}
         for key in (*self._info_keys, "action_error", "audio_clipped", *own):
-            final_info |= {key: infos[key].copy(), f"_{key}": ended & infos[f"_{key}"]}
+            values, known = infos[key], infos[f"_{key}"]
+            final_info |= {key: values.copy(), f"_{key}": ended & known}
+            # The episode that begins has made no step.
+            infos[f"_{key}"] = known & ~ended
+            if values.dtype.kind == "f":
+                infos[key] = np.where(ended, np.nan, values)
         self._start(ended)
         self._runner.observe(ended)
         return {

@@ -10,8 +10,6 @@ use dwell_scene::{MaterialId, ObjectId, RoomId, StructureKind};
 const LEAST_RAYS: f32 = 6.0;
 /// Share of what is seen from which one colour is told of it alone.
 const LEAST_ONLY_COLOR: f32 = 0.75;
-/// The same of walls, of which a tenth is a wall of its own.
-const LEAST_ONLY_WALLS: f32 = 0.9;
 
 /// Returns whether a thing has the colours by which it is told, as far as it is seen: a cooker of white sheet may show its black glass
 /// alone.
@@ -35,21 +33,34 @@ pub(super) fn thing_shows(
     agree(told, &seen, LEAST_ONLY_COLOR)
 }
 
-/// Returns whether floor or walls of a room have a colour, as far as they are seen: white tiles below yellow paint are no white walls.
+/// Returns whether floor or walls of a room have a colour, as far as they are seen: white tiles below yellow paint are no white walls, nor
+/// are three white walls and one of brick, whichever room that one is listed with.
 pub(super) fn surface_shows(
     scene: &SemanticScene<'_>,
     survey: &ViewSurvey,
     (room, surface): (RoomId, RoomSurfaceKind),
     told: &String,
 ) -> bool {
-    let (kind, least_only) = match surface {
-        RoomSurfaceKind::Floor => (StructureKind::Floor, LEAST_ONLY_COLOR),
-        RoomSurfaceKind::Walls => (StructureKind::Wall, LEAST_ONLY_WALLS),
+    let (kind, room) = match surface {
+        RoomSurfaceKind::Floor => (StructureKind::Floor, Some(room)),
+        RoomSurfaceKind::Walls => (StructureKind::Wall, None),
     };
     let rays = survey.materials_of_structure(scene.house(), room, kind);
-    let told = std::slice::from_ref(told);
-    let seen = scene.semantics.surface_color_words(&rays);
-    is_speck(&rays) || agree(told, &seen, least_only)
+    if is_speck(&rays) {
+        return true;
+    }
+    if surface == RoomSurfaceKind::Floor {
+        let seen = scene.semantics.surface_color_words(&rays);
+        return agree(std::slice::from_ref(told), &seen, LEAST_ONLY_COLOR);
+    }
+    // Each material by its own word: what is white below and cream above is of two colours, though a cream thing may be called white.
+    let is_told = |(material, _): &&(MaterialId, f32)| {
+        let words = scene.semantics.surface_color_words(&[(*material, 1.0)]);
+        words.first().is_none_or(|(word, _)| word == told)
+    };
+    let whole: f32 = rays.iter().map(|(_, count)| count).sum();
+    let same: f32 = rays.iter().filter(is_told).map(|(_, count)| count).sum();
+    same >= LEAST_ONLY_COLOR * whole
 }
 
 fn is_speck(rays: &[(MaterialId, f32)]) -> bool {

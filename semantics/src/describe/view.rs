@@ -34,6 +34,10 @@ const MAX_OVERLAP: f32 = 0.1;
 
 /// Tangent of the border between the middle third of a picture and the outer ones.
 const THIRD: f32 = 1.0 / 3.0;
+/// Tangent from which on a thing reaches the picture's left or right border: its outermost ray of 64.
+const BORDER: f32 = 0.96;
+/// What hangs on both sides of a window; of what is cut by the picture's border perhaps one side is seen.
+const PAIR_OF_CURTAINS: &str = "pair of curtains";
 /// Distance before what fills an opening at which the room that it is seen in is looked up, m.
 const BEFORE_M: f32 = 0.3;
 
@@ -126,6 +130,12 @@ impl ViewTeller<'_, '_> {
     fn is_wide(&self, object: ObjectId) -> bool {
         let seen = self.survey.objects.get(&object);
         seen.is_some_and(|own| own.span[1] - own.span[0] > 1.0)
+    }
+
+    /// Returns whether a thing reaches out of the picture at a side.
+    fn is_cut(&self, object: ObjectId) -> bool {
+        let seen = self.survey.objects.get(&object);
+        seen.is_some_and(|own| own.span[0] <= -BORDER || own.span[1] >= BORDER)
     }
 
     /// Returns whether something that moves is seen of a door: without its leaf people see an opening.
@@ -243,6 +253,11 @@ impl ViewTeller<'_, '_> {
             let looks = |object: &ObjectId| {
                 seen_colors::thing_shows(self.scene(), self.survey, *object, &item.colors)
             };
+            if item.noun == Noun::Object(PAIR_OF_CURTAINS.to_owned())
+                && group.objects.iter().any(|object| self.is_cut(*object))
+            {
+                item.noun = Noun::Object("curtain".to_owned());
+            }
             let is_as_seen = group.objects.iter().all(looks);
             if !is_as_seen {
                 item.colors.clear();

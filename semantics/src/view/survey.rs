@@ -152,16 +152,17 @@ impl ViewSurvey {
         )
     }
 
-    /// The same of the walls or floors that border a room.
+    /// The same of the walls or floors that border a room; `None`: of all that are seen.
     pub(crate) fn materials_of_structure(
         &self,
         house: &House,
-        room: RoomId,
+        room: Option<RoomId>,
         kind: StructureKind,
     ) -> Vec<(MaterialId, f32)> {
         let is_own = |piece: StructureId| {
             let own = &house.structure[piece];
-            own.kind == kind && own.room.is_none_or(|own| own == room)
+            let is_there = room.is_none() || own.room.is_none() || own.room == room;
+            own.kind == kind && is_there
         };
         let pieces = self.pieces.iter();
         summed(

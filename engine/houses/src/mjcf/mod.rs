@@ -25,7 +25,7 @@ pub(crate) use read::read;
 /// Returns whether `path` names an XML file: no other format has such.
 pub(crate) fn recognizes(path: &Path) -> bool {
     let ending = path.extension();
-    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("xml")) && path.is_file()
+    ending.is_some_and(|ending| ending.eq_ignore_ascii_case("xml"))
 }
 
 /// Opens a house of several bodies (`docs/formats/mjcf.md`), or a robot on a ground of its own.

@@ -66,6 +66,11 @@ pub(crate) const CASES: &[Case] = &[
         &["house.json", "levels", "expected a list of levels"],
     ),
     fails(
+        "a field twice",
+        |d| put(d, "house.json", "{\"levels\": [],\n\"levels\": []}"),
+        &["house.json:2", "duplicate field `levels`"],
+    ),
+    fails(
         "an empty file",
         |d| put(d, "house.json", ""),
         &["house.json:1", "no valid JSON"],

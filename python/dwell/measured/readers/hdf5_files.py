@@ -7,6 +7,7 @@ links, virtual datasets and values in other files are refused.
 from __future__ import annotations
 
 import contextlib
+import zlib
 from collections import Counter
 from collections.abc import Iterator, Sequence
 from pathlib import Path
@@ -28,6 +29,8 @@ _MAX_BYTES = 8 * 2**30
 _MAX_VALUES = 2**26
 _MAX_GROUPS = 20_000
 _MAX_DEPTH = 8
+#: Bytes that the filter fletcher32 adds to a chunk.
+_CHECKSUM_BYTES = 4
 #: Arrays with longer rows are pictures.
 _MAX_WIDTH = 256
 GROUP_COLUMN = "{group}"
@@ -95,17 +98,49 @@ def _rows(path: Path, part: str | None, needed: Sequence[str] = ()) -> Iterator[
             own = _columns({key: array.shape for key, array in arrays.items()})
             lengths = {key: array.shape[0] for key, array in arrays.items()}
             count = _length(f"{path}: group {name!r}", lengths, own, {*needed})
-            blocks = {
-                key: np.asarray(array, np.float64).reshape(count, -1)
-                for key, array in arrays.items()
-                if lengths[key] == count
-            }
+            blocks = {}
+            for key, array in arrays.items():
+                if lengths[key] == count:
+                    _check_inflation(h5py, path, array)
+                    blocks[key] = np.asarray(array, np.float64).reshape(count, -1)
             for k in range(count):
                 number += 1
                 row: Row = {GROUP_COLUMN: name, "{index}": k}
                 for key, block in blocks.items():
                     row.update(zip(own[key], block[k].tolist(), strict=True))
                 yield number, row
+
+
+def _check_inflation(h5py: Any, path: Path, array: Any) -> None:  # noqa: ANN401
+    """Refuses an array of which a compressed chunk holds more than it has.
+
+    HDF5 inflates a chunk to whatever it holds, a thousand times what stands in the file.
+    """
+    if array.chunks is None:
+        return
+    filters = array.id.get_create_plist()
+    codes = [filters.get_filter(k)[0] for k in range(filters.get_nfilters())]
+    deflate = h5py.h5z.FILTER_DEFLATE
+    if deflate not in codes:
+        return
+    if [code for code in codes if code != h5py.h5z.FILTER_FLETCHER32][-1] != deflate:
+        raise ValueError(f"{path}: {array.name!r} has gzip below other filters; write it anew")
+    size = int(np.prod(array.chunks)) * array.dtype.itemsize
+    for k in range(array.id.get_num_chunks()):
+        chunk = array.id.get_chunk_info(k)
+        _, stored = array.id.read_direct_chunk(chunk.chunk_offset)
+        if chunk.filter_mask:
+            # Chunks may leave filters out, one by one.
+            continue
+        try:
+            inflated = zlib.decompressobj().decompress(stored, size + _CHECKSUM_BYTES + 1)
+        except zlib.error as error:
+            raise ValueError(f"{path}: {array.name!r} is damaged: {error}") from None
+        if len(inflated) > size + _CHECKSUM_BYTES:
+            raise ValueError(
+                f"{path}: a chunk of {array.name!r} inflates to more bytes than the {size} that "
+                "it has"
+            )
 
 
 def _length(

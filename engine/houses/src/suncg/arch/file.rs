@@ -71,7 +71,7 @@ pub struct ArchHole {
 /// [`HousesError::Syntax`] when the text is no JSON, [`HousesError::TooLarge`] for too many elements.
 pub fn parse(text: &[u8], name: &str, report: &mut LoadReport) -> Result<ArchFile, HousesError> {
     let at = FileLocation::file(name);
-    let value: Value = crate::json::from_slice(text).map_err(|error| HousesError::Syntax {
+    let value = crate::json::value_of_unique_keys(text).map_err(|error| HousesError::Syntax {
         at: at.line(u32::try_from(error.line()).unwrap_or(u32::MAX)),
         message: format!("no valid JSON: {error}"),
     })?;

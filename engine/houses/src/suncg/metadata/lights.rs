@@ -51,7 +51,8 @@ impl LightTable {
     pub fn read(text: &[u8], file: &str, report: &mut LoadReport) -> Self {
         let at = FileLocation::file(file);
         let mut table = Self::default();
-        let models: BTreeMap<String, Value> = match crate::json::from_slice(text) {
+        let models = crate::json::value_of_unique_keys(text).and_then(serde_json::from_value);
+        let models: BTreeMap<String, Value> = match models {
             Ok(models) => models,
             Err(error) => {
                 let reason = crate::plain_parse_error(&error);

@@ -268,7 +268,7 @@ pub(super) const MJCF: Column = Column {
             Is(fails(
                 "none",
                 |d| d.join("none.xml"),
-                &["none.xml", "is no house this version opens"],
+                &["none.xml", "No such file"],
             )),
         ),
     ],
