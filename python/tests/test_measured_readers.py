@@ -210,7 +210,9 @@ def test_a_chunk_of_hdf5_that_inflates_without_end_is_refused(tmp_path: Path) ->
     assert len(list(open_table(path, "data").rows)) == 80
     with h5py.File(path, "r+") as file:
         file["data/demo_0/t"].id.write_direct_chunk((0,), whole)
-    with pytest.raises(ValueError, match=r"demos\.hdf5: a chunk of '/data/demo_0/t' inflates to mo"):
+    with pytest.raises(
+        ValueError, match=r"demos\.hdf5: a chunk of '/data/demo_0/t' inflates to mo"
+    ):
         list(open_table(path, "data").rows)
 
 

@@ -36,6 +36,8 @@ const MAX_OVERLAP: f32 = 0.1;
 const THIRD: f32 = 1.0 / 3.0;
 /// Tangent from which on a thing reaches the picture's left or right border: its outermost ray of 64.
 const BORDER: f32 = 0.96;
+/// Share of a thing in sight from which it is seen as a whole.
+const WHOLE: f32 = 0.9;
 /// What hangs on both sides of a window; of what is cut by the picture's border perhaps one side is seen.
 const PAIR_OF_CURTAINS: &str = "pair of curtains";
 /// Distance before what fills an opening at which the room that it is seen in is looked up, m.
@@ -132,10 +134,12 @@ impl ViewTeller<'_, '_> {
         seen.is_some_and(|own| own.span[1] - own.span[0] > 1.0)
     }
 
-    /// Returns whether a thing reaches out of the picture at a side.
+    /// Returns whether a thing reaches out of the picture at a side, or is hidden in part.
     fn is_cut(&self, object: ObjectId) -> bool {
         let seen = self.survey.objects.get(&object);
-        seen.is_some_and(|own| own.span[0] <= -BORDER || own.span[1] >= BORDER)
+        seen.is_some_and(|own| {
+            own.span[0] <= -BORDER || own.span[1] >= BORDER || own.unhidden < WHOLE
+        })
     }
 
     /// Returns whether something that moves is seen of a door: without its leaf people see an opening.
@@ -333,9 +337,17 @@ impl ViewTeller<'_, '_> {
             (StructureKind::Floor, RoomSurfaceKind::Floor),
             (StructureKind::Wall, RoomSurfaceKind::Walls),
         ];
+        // Of this room: through a doorway another floor is seen.
+        let share = |kind: StructureKind| -> f32 {
+            let own = self.survey.structure.iter().filter(|(piece, _)| {
+                let own = &scene.house().structure[**piece];
+                own.kind == kind && own.room.is_none_or(|own| own == room)
+            });
+            own.map(|(_, share)| share).sum()
+        };
         let seen = kinds
             .into_iter()
-            .filter(|(kind, _)| self.survey.structure_share(scene, *kind) >= LEAST_SURFACE);
+            .filter(|(kind, _)| share(*kind) >= LEAST_SURFACE);
         let seen: Vec<RoomSurfaceKind> = seen.map(|(_, surface)| surface).collect();
         let mut surfaces = surfaces(scene, room);
         surfaces.retain(|surface| seen.contains(&surface.kind));
@@ -497,7 +509,8 @@ impl ViewTeller<'_, '_> {
                 continue;
             };
             if !self.scene().facts(object).belongs_to_opening() {
-                if distances > 0 {
+                // Of a rug that runs out of the picture nobody sees where it begins.
+                if distances > 0 && !self.scene().facts(object).is_rug() {
                     let sighting = self.survey.objects[&object];
                     self.say_distance(&subject, sighting);
                     distances -= 1;
