@@ -170,7 +170,7 @@ class LanguageApi(RelationApi):
             ...     print(world.refer("vase_1", strategy=strategy))
             the vase in the children's room
             the blue-gray vase
-            the blue-gray vase in a bookshelf
+            the blue-gray vase in a bookcase
         """
         seed = None if seed is None else integer_in_range("seed", seed)
         rows = _native.world_refer(

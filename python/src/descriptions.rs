@@ -11,6 +11,7 @@ use dwell_semantics::describe::{
     GroundedText, TextLength, TextOptions, TextStyle, captions, describe_changes, describe_house,
     describe_rooms, describe_route, describe_view,
 };
+use dwell_semantics::form::Form;
 use dwell_semantics::graph::scene_graph;
 use dwell_semantics::instruct::{
     Instruction, InstructionGoal, InstructionKind, candidates, choose,
@@ -61,44 +62,63 @@ pub(crate) fn char_offset(text: &str, byte: usize) -> usize {
     }
 }
 
-/// The noun phrases of a text by its letters, with the ids of their things.
-pub(crate) fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Value {
-    let spans = phrases.iter().map(|phrase| {
-        let ThingIds { ids, rooms } = ThingIds::of(house, &phrase.terms);
-        json!({
-            "start": char_offset(text, phrase.start),
-            "end": char_offset(text, phrase.end),
-            "ids": ids,
-            "rooms": rooms,
-        })
+/// A noun phrase of a text by its letters, with the ids of its things.
+#[derive(Serialize)]
+pub(crate) struct SpanRow {
+    start: usize,
+    end: usize,
+    #[serde(flatten)]
+    things: ThingIds,
+}
+
+/// The noun phrases of a text.
+pub(crate) fn spans(house: &House, text: &str, phrases: &[GroundedPhrase]) -> Vec<SpanRow> {
+    let spans = phrases.iter().map(|phrase| SpanRow {
+        start: char_offset(text, phrase.start),
+        end: char_offset(text, phrase.end),
+        things: ThingIds::of(house, &phrase.terms),
     });
     spans.collect()
 }
 
-pub(crate) fn text_row(house: &House, text: &GroundedText) -> Result<Value, PyFault> {
-    let mut claims = Vec::with_capacity(text.claims.len());
-    let mut all: Vec<Term> = Vec::new();
-    for claim in &text.claims {
-        let ThingIds { ids, rooms } = ThingIds::of(house, &claim.terms);
-        all.extend_from_slice(&claim.terms);
-        claims.push(json!({
-            "start": char_offset(&text.text, claim.start),
-            "end": char_offset(&text.text, claim.end),
-            "form": serde_json::to_value(&claim.form)?,
-            "ids": ids,
-            "rooms": rooms,
-        }));
-    }
+/// A claim of a text by its letters.
+#[derive(Serialize)]
+struct ClaimRow<'a> {
+    start: usize,
+    end: usize,
+    form: &'a Form,
+    #[serde(flatten)]
+    things: ThingIds,
+}
+
+/// A text with what it is about.
+#[derive(Serialize)]
+pub(crate) struct TextRow<'a> {
+    text: &'a str,
+    spans: Vec<SpanRow>,
+    claims: Vec<ClaimRow<'a>>,
+    #[serde(flatten)]
+    things: ThingIds,
+}
+
+/// A text by its letters, with the ids of the things that it is about.
+pub(crate) fn text_row<'a>(house: &House, text: &'a GroundedText) -> TextRow<'a> {
+    let claims = text.claims.iter().map(|claim| ClaimRow {
+        start: char_offset(&text.text, claim.start),
+        end: char_offset(&text.text, claim.end),
+        form: &claim.form,
+        things: ThingIds::of(house, &claim.terms),
+    });
+    let terms = text.claims.iter().flat_map(|claim| &claim.terms);
+    let mut all: Vec<Term> = terms.copied().collect();
     all.sort_unstable();
     all.dedup();
-    let ThingIds { ids, rooms } = ThingIds::of(house, &all);
-    Ok(json!({
-        "text": text.text,
-        "spans": spans(house, &text.text, &text.phrases),
-        "claims": claims,
-        "ids": ids,
-        "rooms": rooms,
-    }))
+    TextRow {
+        text: &text.text,
+        spans: spans(house, &text.text, &text.phrases),
+        claims: claims.collect(),
+        things: ThingIds::of(house, &all),
+    }
 }
 
 /// Returns an instruction with its goal and its noun phrases, by the ids of sensors and of the scene graph.
@@ -232,9 +252,8 @@ pub(crate) fn describe_level(
             )));
         }
     };
-    let rows: Result<Vec<Value>, PyFault> =
-        texts.iter().map(|text| text_row(house, text)).collect();
-    PyValue::of(&rows?)
+    let rows: Vec<TextRow<'_>> = texts.iter().map(|text| text_row(house, text)).collect();
+    PyValue::of(&rows)
 }
 
 impl WorldAccess<'_> {

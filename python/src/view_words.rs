@@ -244,7 +244,8 @@ pub(crate) fn world_view_words(
         let mut captions = serde_json::Map::new();
         let texts = describe_views(&checker, &survey, &options);
         for (length, text) in TextLength::ALL.iter().zip(&texts) {
-            captions.insert(length.name().to_owned(), text_row(house, text)?);
+            let row = serde_json::to_value(text_row(house, text))?;
+            captions.insert(length.name().to_owned(), row);
         }
         let mut references = Vec::new();
         for (id, object) in ids.iter().zip(&objects) {
@@ -252,7 +253,7 @@ pub(crate) fn world_view_words(
                 let text =
                     describe_reference_in_view(&checker, &survey, *object, strategy, wording);
                 if let Some(text) = text {
-                    let mut row = text_row(house, &text)?;
+                    let mut row = serde_json::to_value(text_row(house, &text))?;
                     row["id"] = json!(id);
                     row["strategy"] = json!(strategy.name());
                     references.push(row);
