@@ -18,7 +18,7 @@ def without_pictures(config: dict[str, Any]) -> dict[str, Any]:
     Raises:
         ConfigError: The kind of a sensor is no text.
     """
-    pictures = _picture_kinds()
+    pictures = picture_kinds()
 
     def kept(row: object, at: str) -> object:
         if not isinstance(row, dict) or not isinstance(row.get("sensors"), list):
@@ -65,7 +65,7 @@ def picture_faults(config: Mapping[str, Any], house: House) -> Iterator[str]:
         config: The settings of a replay that can be played without them.
         house: Its house.
     """
-    kinds = _picture_kinds()
+    kinds = picture_kinds()
     agents = config.get("agents") or []
     owners = [("", config), *((f"agents[{k}].", row) for k, row in enumerate(agents))]
     for whose, owner in owners:
@@ -80,5 +80,6 @@ def picture_faults(config: Mapping[str, Any], house: House) -> Iterator[str]:
                 yield f"config: {whose}sensors[{k}]: {error}"
 
 
-def _picture_kinds() -> set[str]:
+def picture_kinds() -> set[str]:
+    """The kinds of sensors that are pictures, on which no bit of a world depends."""
     return {row["name"] for row in _native.sensors() if row["picture_style"] is not None}

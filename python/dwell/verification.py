@@ -15,6 +15,7 @@ from dwell.evaluation_summary import METRICS, is_same, summary
 from dwell.played_actions import element_of, refuse_other_form, unpacked, written_action
 from dwell.policies import BASELINES, name_of, policy_of
 from dwell.policy_source import source_hash
+from dwell.replay_sensors import picture_kinds
 from dwell.result_fields import checked_result
 from dwell.stated_episodes import checked_episode
 from dwell.verified_origin import origin_differences
@@ -187,7 +188,7 @@ def _policy(
 
 def _without_pictures(sensors: Mapping[str, Any]) -> dict[str, Any]:
     """Those that are no pictures, on which no bit of a world depends; one at least."""
-    pictures = {row["name"] for row in _native.sensors() if row["picture_style"] is not None}
+    pictures = picture_kinds()
     kept = {name: own for name, own in sensors.items() if own.get("kind", name) not in pictures}
     return kept or {"gps": {}}
 

@@ -184,10 +184,7 @@ pub(crate) fn world_refer(
         let house = scene.house();
         let wording = seed.map(|seed| RandomKey::root(seed).child(house.name.as_str()));
         let text = describe_reference(&scene, listener, object, strategy, wording);
-        let rows: Result<Vec<Value>, PyFault> = text
-            .iter()
-            .map(|text| Ok(serde_json::to_value(text_row(house, text))?))
-            .collect();
-        answers::PyValue::of(&rows?)
+        let rows: Vec<_> = text.iter().map(|text| text_row(house, text)).collect();
+        answers::PyValue::of(&rows)
     })
 }

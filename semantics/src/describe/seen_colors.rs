@@ -30,7 +30,7 @@ pub(super) fn thing_shows(
     let paints = scene.semantics.material_colors();
     let facts = scene.facts(object);
     let seen = facts.colors_in_view(scene.house(), paints, &rays);
-    agree(told, &seen, LEAST_ONLY_COLOR)
+    agree(told, &seen)
 }
 
 /// Returns whether floor or walls of a room have a colour, as far as they are seen: white tiles below yellow paint are no white walls, nor
@@ -51,7 +51,7 @@ pub(super) fn surface_shows(
     }
     if surface == RoomSurfaceKind::Floor {
         let seen = scene.semantics.surface_color_words(&rays);
-        return agree(std::slice::from_ref(told), &seen, LEAST_ONLY_COLOR);
+        return agree(std::slice::from_ref(told), &seen);
     }
     // Each material by its own word: what is white below and cream above is of two colours, though a cream thing may be called white.
     let is_told = |(material, _): &&(MaterialId, f32)| {
@@ -68,12 +68,12 @@ fn is_speck(rays: &[(MaterialId, f32)]) -> bool {
 }
 
 /// Returns whether a reader who sees the colours `seen`, with their shares, agrees with those told: the only one is that of at least
-/// `least_only` or one between it and another, and each of two is there. What has no colour is not judged.
-fn agree(told: &[String], seen: &[(&'static str, f32)], least_only: f32) -> bool {
+/// [`LEAST_ONLY_COLOR`] or one between it and another, and each of two is there. What has no colour is not judged.
+fn agree(told: &[String], seen: &[(&'static str, f32)]) -> bool {
     let is = |word: &str, own: &str| word == own || speakers_disagree(own, word);
     match (told, seen) {
         (_, []) => true,
-        ([only], [(largest, share), ..]) => is(only, largest) && *share >= least_only,
+        ([only], [(largest, share), ..]) => is(only, largest) && *share >= LEAST_ONLY_COLOR,
         (all, seen) => all
             .iter()
             .all(|word| seen.iter().any(|(own, _)| is(word, own))),

@@ -338,13 +338,7 @@ impl ViewTeller<'_, '_> {
             (StructureKind::Wall, RoomSurfaceKind::Walls),
         ];
         // Of this room: through a doorway another floor is seen.
-        let share = |kind: StructureKind| -> f32 {
-            let own = self.survey.structure.iter().filter(|(piece, _)| {
-                let own = &scene.house().structure[**piece];
-                own.kind == kind && own.room.is_none_or(|own| own == room)
-            });
-            own.map(|(_, share)| share).sum()
-        };
+        let share = |kind| self.survey.structure_share(scene.house(), room, kind);
         let seen = kinds
             .into_iter()
             .filter(|(kind, _)| share(*kind) >= LEAST_SURFACE);
@@ -395,13 +389,12 @@ impl ViewTeller<'_, '_> {
         };
         let near: Vec<&(ObjectId, Description)> =
             before.iter().filter(|(other, _)| near(*other)).collect();
+        let on_rug = |other: ObjectId| {
+            let pair = [object, other];
+            let [own, mark] = pair.map(|id| self.scene().extent(id).bounds);
+            pair.iter().any(|id| self.scene().facts(*id).is_rug()) && overlap_in_plan(&own, &mark)
+        };
         for name in RELATIONS {
-            let on_rug = |other: ObjectId| {
-                let pair = [object, other];
-                let [own, mark] = pair.map(|id| self.scene().extent(id).bounds);
-                pair.iter().any(|id| self.scene().facts(*id).is_rug())
-                    && overlap_in_plan(&own, &mark)
-            };
             let held = |other: ObjectId| {
                 let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
                 let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
@@ -533,7 +526,7 @@ fn overlap_in_plan(one: &Aabb, other: &Aabb) -> bool {
 }
 
 /// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
-/// picture, the things by side with the largest first, how far the largest are and where they are to each other, what lies on them,
+/// picture, the things by side with the largest first, six kinds at most, how far the largest are and where they are to each other, what lies on them,
 /// and what is seen in other rooms. What covers less than 100 pixels of 256 by 256, or is hidden to more than three quarters, is left
 /// out. Without a viewer nothing is seen.
 pub fn describe_view(

@@ -159,15 +159,10 @@ impl ViewSurvey {
         room: Option<RoomId>,
         kind: StructureKind,
     ) -> Vec<(MaterialId, f32)> {
-        let is_own = |piece: StructureId| {
-            let own = &house.structure[piece];
-            let is_there = room.is_none() || own.room.is_none() || own.room == room;
-            own.kind == kind && is_there
-        };
         let pieces = self.pieces.iter();
         summed(
             pieces
-                .filter(|((piece, _), _)| is_own(*piece))
+                .filter(|((piece, _), _)| borders(house, *piece, room, kind))
                 .map(|((_, material), rays)| (*material, *rays)),
         )
     }
@@ -177,13 +172,19 @@ impl ViewSurvey {
         self.parts.keys().any(|(own, _)| *own == part)
     }
 
-    /// The share of the picture that pieces of the building of one kind cover, 0 to 1.
-    pub fn structure_share(&self, scene: &SemanticScene<'_>, kind: StructureKind) -> f32 {
+    /// The share of the picture that the walls or floors that border a room cover, 0 to 1.
+    pub(crate) fn structure_share(&self, house: &House, room: RoomId, kind: StructureKind) -> f32 {
         let own = self.structure.iter();
-        own.filter(|(piece, _)| scene.house().structure[**piece].kind == kind)
+        own.filter(|(piece, _)| borders(house, **piece, Some(room), kind))
             .map(|(_, share)| share)
             .sum()
     }
+}
+
+/// Returns whether a piece of the building is of a kind and borders a room; `None`: any.
+fn borders(house: &House, piece: StructureId, room: Option<RoomId>, kind: StructureKind) -> bool {
+    let own = &house.structure[piece];
+    own.kind == kind && (room.is_none() || own.room.is_none() || own.room == room)
 }
 
 fn summed(rays: impl Iterator<Item = (MaterialId, u32)>) -> Vec<(MaterialId, f32)> {

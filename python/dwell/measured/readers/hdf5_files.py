@@ -123,15 +123,16 @@ def _check_inflation(h5py: Any, path: Path, array: Any) -> None:  # noqa: ANN401
     deflate = h5py.h5z.FILTER_DEFLATE
     if deflate not in codes:
         return
-    if [code for code in codes if code != h5py.h5z.FILTER_FLETCHER32][-1] != deflate:
+    outer = [code for code in codes if code != h5py.h5z.FILTER_FLETCHER32]
+    if outer[-1] != deflate or outer.count(deflate) > 1:
         raise ValueError(f"{path}: {array.name!r} has gzip below other filters; write it anew")
     size = int(np.prod(array.chunks)) * array.dtype.itemsize
     for k in range(array.id.get_num_chunks()):
         chunk = array.id.get_chunk_info(k)
-        _, stored = array.id.read_direct_chunk(chunk.chunk_offset)
-        if chunk.filter_mask:
-            # Chunks may leave filters out, one by one.
+        # Chunks may leave filters out, one by one.
+        if chunk.filter_mask >> codes.index(deflate) & 1:
             continue
+        _, stored = array.id.read_direct_chunk(chunk.chunk_offset)
         try:
             inflated = zlib.decompressobj().decompress(stored, size + _CHECKSUM_BYTES + 1)
         except zlib.error as error:
