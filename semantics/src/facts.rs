@@ -42,7 +42,7 @@ pub struct ObjectFacts {
     pub patches: Vec<ColorShare>,
     /// Its colours in spoken words with their shares, largest first; empty for things that are nearly all clear glass or mirror.
     pub colors: Vec<(&'static str, f32)>,
-    /// The pattern of most of it; `None` for plain things, and for pictures, screens and books.
+    /// The pattern of most of it; `None` for plain things, and for pictures, globes, screens and books.
     pub pattern: Option<SurfacePattern>,
     /// Whether at least half of what is seen of it is clear glass or mirror.
     pub(crate) is_mostly_clear: bool,
@@ -90,7 +90,8 @@ impl ObjectFacts {
         let clear = shown.iter().filter(|(id, _)| is_clear(house, *id));
         let is_mostly_clear = 2.0 * area_m2(clear) >= area_m2(shown.iter()) && !shown.is_empty();
         let patches = patches(house, paints, &named);
-        let pattern = pattern(paints, category, &named);
+        let pattern = pattern(paints, category, &named)
+            .filter(|_| kind.is_none_or(|own| own.singular != "globe"));
         let substances = substances(house, &areas);
         let seen_substance = main_substance(house, shown);
         let mut colors = color_words(&patches, ColorVocabulary::Spoken);
@@ -198,12 +199,12 @@ impl ObjectFacts {
     }
 
     /// The colours a speaker would use: the one of most of the surface, else the two largest, as of a pattern; none without a surface,
-    /// when no two cover most of it, for racks and what is mostly clear glass, and for pictures that are not nearly all of one or that one
+    /// when no two cover most of it, for racks, laptops and what is mostly clear glass, and for pictures that are not nearly all of one or that one
     /// is the paper's.
     pub fn spoken_colors(&self) -> &[(&'static str, f32)] {
         // "A white picture" leaves open whether paper, mat or frame is meant; racks have the colours of what hangs on them to some,
-        // their own to others; nobody says a yellow glass table of a clear one with a golden frame.
-        if self.is_one_of(&["hanger", "towel_rack"])
+        // their own to others, a laptop is as much case as keys; nobody says a yellow glass table of a clear one with a golden frame.
+        if self.is_one_of(&["hanger", "towel_rack", "laptop"])
             || self.is_mostly_clear && !self.is_one_of(&["window"])
         {
             return &[];
@@ -316,6 +317,12 @@ impl ObjectFacts {
         let classes = ["door", "window", "curtain", "blinds"];
         self.category
             .is_some_and(|row| classes.contains(&row.nyu40_name))
+    }
+
+    /// Returns whether it divides a room and people see through a part of it.
+    pub(crate) fn is_glazed_partition(&self) -> bool {
+        let is_partition = self.category.is_some_and(|row| row.name == "partition");
+        is_partition && self.adjectives().any(|own| own == "glass")
     }
 
     pub(crate) fn is_window(&self) -> bool {

@@ -7,6 +7,7 @@ use super::{ColorVocabulary, Oklab};
 use dwell_scene::parallel::Threads;
 use dwell_scene::units::linear_from_srgb;
 use dwell_scene::{House, IdVec, MaterialId, Texture};
+use glam::Vec2;
 
 /// Share of the visible surface below which a colour is not worth a word.
 pub const MENTION_SHARE: f32 = 0.2;
@@ -18,6 +19,11 @@ const SHADE: f32 = 0.12;
 const DOMINANT_SHARE: f32 = 0.6;
 /// Share of an image from which a sort of colour is one of a pattern.
 const SORT_SHARE: f32 = 0.2;
+/// Least difference in chroma between two tints of one sort, in `OKLab`: pale teal and cream are as light as shades of one colour and are
+/// two to people.
+const TINTS_APART: f32 = 0.04;
+/// Mean distance of shades from their tint, by that of both tints, up to which they lie in two heaps: evenly spread ones have 0.25.
+const HEAP: f32 = 0.2;
 /// Approximate number of pixels by which an image is sampled.
 const PIXELS: usize = 1024;
 /// Number of times that the middle of a sort is moved to the mean of its shades.
@@ -112,7 +118,7 @@ impl MaterialColors {
 /// The colours of an image times `base`: the sorts of at least [`SORT_SHARE`] and what is left, or the only one, if at least
 /// [`DOMINANT_SHARE`] has it.
 ///
-/// A sort is what lies within [`SHADE`] of its own mean. The largest is sought from some of the pixels that lie in no sort found
+/// A sort is what lies within [`SHADE`] of its own mean; one of [two tints](two_tints) counts as two. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
 fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> MaterialPalette {
@@ -146,14 +152,24 @@ fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> M
     while left.len() as f32 >= (SORT_SHARE * whole).max(1.0) {
         let middle = largest_cluster_mean(&left);
         let lab = Oklab::from_linear(middle);
-        let before = left.len();
-        left.retain(|(_, shade)| shade.distance(lab) > SHADE);
-        let share = (before - left.len()) as f32 / whole;
-        if share < SORT_SHARE {
+        let (sort, others): (Vec<Shade>, Vec<Shade>) = left
+            .into_iter()
+            .partition(|(_, shade)| shade.distance(lab) <= SHADE);
+        left = others;
+        if (sort.len() as f32) < SORT_SHARE * whole {
             break;
         }
-        let linear = Some(middle);
-        found.push(ColorShare { linear, share });
+        let share = |count: usize| count as f32 / whole;
+        match two_tints(&sort, SORT_SHARE * whole) {
+            Some(tints) => found.extend(tints.map(|(linear, count)| ColorShare {
+                linear: Some(linear),
+                share: share(count),
+            })),
+            None => found.push(ColorShare {
+                linear: Some(middle),
+                share: share(sort.len()),
+            }),
+        }
     }
     let pattern = (found.len() > 1).then(|| pattern(&shades));
     let sorts = if let [sort] = found[..]
@@ -197,6 +213,55 @@ fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
         }
     }
     best.0
+}
+
+/// The two tints of a sort of colour with their numbers of shades, the larger first, if its shades lie in two heaps of at least
+/// `least` shades by their chroma (2-means, from the two shades farthest apart).
+fn two_tints(shades: &[Shade], least: f32) -> Option<[([f32; 3], usize); 2]> {
+    let chroma = |shade: &Shade| Vec2::new(shade.1.a, shade.1.b);
+    let farthest_from = |from: Vec2| {
+        let all = shades.iter().map(chroma);
+        all.max_by(|p, q| p.distance(from).total_cmp(&q.distance(from)))
+    };
+    let one = farthest_from(chroma(shades.first()?))?;
+    let mut middles = [one, farthest_from(one)?];
+    let is_second = |shade: &Shade, [one, other]: [Vec2; 2]| {
+        chroma(shade).distance(other) < chroma(shade).distance(one)
+    };
+    let mut counts = [0; 2];
+    for _ in 0..ROUNDS {
+        let mut sums = [Vec2::ZERO; 2];
+        counts = [0; 2];
+        for shade in shades {
+            let k = usize::from(is_second(shade, middles));
+            sums[k] += chroma(shade);
+            counts[k] += 1;
+        }
+        if counts.contains(&0) {
+            return None;
+        }
+        middles = std::array::from_fn(|k| sums[k] / counts[k] as f32);
+    }
+    let apart = middles[0].distance(middles[1]);
+    let spread = shades.iter().map(|shade| {
+        let own = middles[usize::from(is_second(shade, middles))];
+        chroma(shade).distance(own)
+    });
+    let spread = spread.sum::<f32>() / shades.len() as f32;
+    if apart < TINTS_APART
+        || counts.iter().any(|count| (*count as f32) < least)
+        || spread > HEAP * apart
+    {
+        return None;
+    }
+    let mut tints = [false, true].map(|second| {
+        let own = shades
+            .iter()
+            .filter(|shade| is_second(shade, middles) == second);
+        mean(own.map(|(linear, _)| *linear))
+    });
+    tints.sort_by_key(|tint| std::cmp::Reverse(tint.1));
+    Some(tints)
 }
 
 /// The greatest common divisor (Euclid).
@@ -365,6 +430,18 @@ mod tests {
         ];
         let picture = |_, y: usize| palette[y * 7 / 64];
         assert!(words(&image(picture)).is_empty());
+        // Pale teal and cream, as light as each other, each with a grain; a grain alone makes no two.
+        let rug = |x: usize, y: usize| {
+            let grain = (x * 7 % 5) as u8 * 3;
+            let tint: [u8; 3] = if y % 16 < 8 {
+                [158, 183, 177]
+            } else {
+                [214, 203, 182]
+            };
+            tint.map(|channel| channel + grain)
+        };
+        // Basic terms have no teal.
+        assert_eq!(words(&image(rug)), ["blue", "white"]);
         let thirds = |_, y: usize| [[150, 190, 230], [40, 110, 50], [180, 30, 30]][y * 3 / 64];
         assert_eq!(words(&image(thirds)), ["blue", "green", "red"]);
         // All of it see-through.

@@ -14,6 +14,7 @@ mod seen_colors;
 mod surroundings;
 mod text;
 mod view;
+mod view_places;
 
 pub use changes::describe_changes;
 pub use house::describe_house;

@@ -5,13 +5,13 @@ use super::options::{TextLength, TextOptions, TextStyle};
 use super::room::surfaces;
 use super::seen_colors;
 use super::text::{GroundedText, TextWriter, claim};
-use crate::check::{Addressee, Checker, rounded_distance_m};
+use crate::check::{Addressee, Checker};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
 use crate::predicates;
 use crate::refer::room_phrase;
 use crate::scene::{SemanticScene, Term, Viewer};
-use crate::view::{Sighting, ViewSurvey, refer_in_view};
-use dwell_scene::{Aabb, ObjectId, RoomId, StructureKind};
+use crate::view::{ViewSurvey, refer_in_view};
+use dwell_scene::{ObjectId, RoomId, StructureKind};
 use std::cell::RefCell;
 use std::collections::BTreeMap;
 
@@ -19,14 +19,14 @@ use std::collections::BTreeMap;
 const LEAST_SHARE: f32 = 100.0 / 65536.0;
 /// Share of a thing that must be in sight: less is a sliver that people do not recognize.
 const LEAST_UNHIDDEN: f32 = 0.25;
+/// Shares as above of what stands in another room: through a doorway less is recognized.
+const LEAST_ELSEWHERE: [f32; 2] = [0.004, 0.6];
+/// Share of the picture below which what is of clear glass is overlooked.
+const LEAST_CLEAR: f32 = 0.005;
 /// Shares as above from which a thing is counted with others that look like it: who is told of one lamp counts the second, too.
 const LEAST_COUNTED: [f32; 2] = [LEAST_SHARE / 3.0, 0.1];
 /// Share of the picture from which floor or walls are told.
 const LEAST_SURFACE: f32 = 0.03;
-/// Share of the picture from which a thing is told with its place among others.
-const LEAST_ANCHOR: f32 = 0.01;
-/// Distance up to which things are told by their place to each other, m: farther ones are side by side in the picture alone.
-const MAX_BESIDE_M: f32 = 1.0;
 /// Number of kinds of things that one sentence lists.
 const MAX_LISTED: usize = 6;
 /// Tangent up to which a thing on one side may reach over to the other: 6 degrees.
@@ -35,7 +35,7 @@ const MAX_OVERLAP: f32 = 0.1;
 /// Tangent of the border between the middle third of a picture and the outer ones.
 const THIRD: f32 = 1.0 / 3.0;
 /// Tangent from which on a thing reaches the picture's left or right border: its outermost ray of 64.
-const BORDER: f32 = 0.96;
+pub(super) const BORDER: f32 = 0.96;
 /// Share of a thing in sight from which it is seen as a whole.
 const WHOLE: f32 = 0.9;
 /// What hangs on both sides of a window; of what is cut by the picture's border perhaps one side is seen.
@@ -45,14 +45,12 @@ const BEFORE_M: f32 = 0.3;
 
 /// The sides of a viewer.
 const SIDES: [&str; 3] = ["straight_ahead", "on_left", "on_right"];
-/// Relations between two things in view, the most telling first. "Behind" is left out: people take it of a sofa's back, not of the view.
-const RELATIONS: [&str; 5] = ["above", "under", "next_to", "left_of", "right_of"];
 
 /// How much is told at each length.
-struct ViewLimits {
+pub(super) struct ViewLimits {
     kinds: usize,
-    relations: usize,
-    distances: usize,
+    pub(super) relations: usize,
+    pub(super) distances: usize,
 }
 
 impl ViewLimits {
@@ -71,9 +69,9 @@ impl ViewLimits {
 }
 
 /// Things that stand in view, by how they are told.
-struct ViewContents {
+pub(super) struct ViewContents {
     /// Things of the viewer's room by their side; those that reach over several sides have none. The largest group first.
-    sides: Vec<(Option<&'static str>, Vec<ObjectId>)>,
+    pub(super) sides: Vec<(Option<&'static str>, Vec<ObjectId>)>,
     /// Things in and on others that are told, too.
     carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>>,
     /// Things in other rooms.
@@ -83,11 +81,11 @@ struct ViewContents {
 /// How things in view are referred to, of those that were looked up so far.
 type ThingNames = RefCell<BTreeMap<ObjectId, Option<Description>>>;
 
-struct ViewTeller<'a, 'b> {
-    writer: TextWriter<'b>,
-    checker: &'b Checker<'a>,
-    viewer: Viewer,
-    survey: &'b ViewSurvey,
+pub(super) struct ViewTeller<'a, 'b> {
+    pub(super) writer: TextWriter<'b>,
+    pub(super) checker: &'b Checker<'a>,
+    pub(super) viewer: Viewer,
+    pub(super) survey: &'b ViewSurvey,
     style: TextStyle,
     room: Option<RoomId>,
     /// The things worth telling, ascending.
@@ -97,7 +95,7 @@ struct ViewTeller<'a, 'b> {
 }
 
 impl ViewTeller<'_, '_> {
-    fn scene(&self) -> &SemanticScene<'_> {
+    pub(super) fn scene(&self) -> &SemanticScene<'_> {
         self.checker.scene()
     }
 
@@ -107,7 +105,7 @@ impl ViewTeller<'_, '_> {
     }
 
     /// The description that fits a thing alone.
-    fn name(&self, object: ObjectId) -> Option<Description> {
+    pub(super) fn name(&self, object: ObjectId) -> Option<Description> {
         if let Some(known) = self.names.borrow().get(&object) {
             return known.clone();
         }
@@ -121,7 +119,7 @@ impl ViewTeller<'_, '_> {
         name
     }
 
-    fn share(&self, object: ObjectId) -> f32 {
+    pub(super) fn share(&self, object: ObjectId) -> f32 {
         self.survey
             .objects
             .get(&object)
@@ -129,7 +127,7 @@ impl ViewTeller<'_, '_> {
     }
 
     /// Returns whether a thing reaches over more than half of the picture.
-    fn is_wide(&self, object: ObjectId) -> bool {
+    pub(super) fn is_wide(&self, object: ObjectId) -> bool {
         let seen = self.survey.objects.get(&object);
         seen.is_some_and(|own| own.span[1] - own.span[0] > 1.0)
     }
@@ -154,7 +152,7 @@ impl ViewTeller<'_, '_> {
     }
 
     /// Returns whether neither of two things lies with its middle before or behind the other in the picture.
-    fn is_beside_in_picture(&self, one: ObjectId, other: ObjectId) -> bool {
+    pub(super) fn is_beside_in_picture(&self, one: ObjectId, other: ObjectId) -> bool {
         let span = |object| self.survey.objects.get(&object).map(|own| own.span);
         let (Some(one), Some(other)) = (span(one), span(other)) else {
             return false;
@@ -211,6 +209,20 @@ impl ViewTeller<'_, '_> {
         })
     }
 
+    /// Returns whether people recognize a thing through a doorway.
+    fn is_made_out_elsewhere(&self, object: ObjectId) -> bool {
+        let [least_share, least_unhidden] = LEAST_ELSEWHERE;
+        let seen = self.survey.objects.get(&object);
+        seen.is_some_and(|own| own.share >= least_share && own.unhidden >= least_unhidden)
+    }
+
+    /// Returns whether people overlook a thing of clear glass, or take it for something else: a glazed partition for a door.
+    fn is_overlooked(&self, object: ObjectId) -> bool {
+        let facts = self.scene().facts(object);
+        facts.is_mostly_clear && !facts.belongs_to_opening() && self.share(object) < LEAST_CLEAR
+            || facts.is_glazed_partition()
+    }
+
     fn contents(&self) -> ViewContents {
         let mut sides: BTreeMap<Option<&'static str>, (f32, Vec<ObjectId>)> = BTreeMap::new();
         let mut carried: BTreeMap<(ObjectId, &'static str), Vec<ObjectId>> = BTreeMap::new();
@@ -219,7 +231,8 @@ impl ViewTeller<'_, '_> {
             let seen_in = self.seen_in(object);
             if self.room.is_some() && seen_in != self.room {
                 // What belongs to no room, or to another than it is seen in, cannot be told truly.
-                if let Some(other) = seen_in.filter(|_| seen_in == self.scene().room_of(object)) {
+                let own = seen_in.filter(|_| seen_in == self.scene().room_of(object));
+                if let Some(other) = own.filter(|_| self.is_made_out_elsewhere(object)) {
                     elsewhere.entry(other).or_default().push(object);
                 }
                 continue;
@@ -277,10 +290,12 @@ impl ViewTeller<'_, '_> {
     }
 
     /// `objects` with the things in the same place that a reader would count with one of them, since they look like it: those that
-    /// are told with what they stand on, and those that are too small to be told on their own.
+    /// are told with what they stand on, and those that are too small to be told on their own; not `others`, which are counted in
+    /// another place.
     fn with_look_alikes(
         &self,
         objects: &[ObjectId],
+        others: &[ObjectId],
         in_place: impl Fn(ObjectId) -> bool,
     ) -> Vec<ObjectId> {
         let [least_share, least_unhidden] = LEAST_COUNTED;
@@ -291,6 +306,7 @@ impl ViewTeller<'_, '_> {
             own.share >= least_share
                 && own.unhidden >= least_unhidden
                 && !objects.contains(object)
+                && !others.contains(object)
                 && self.holds("visible", **object)
                 && in_place(**object)
                 && objects
@@ -359,69 +375,6 @@ impl ViewTeller<'_, '_> {
         }
     }
 
-    /// Says how far a thing is, in whole metres, where it is no nearer than that.
-    fn say_distance(&mut self, subject: &Description, sighting: Sighting) {
-        let clause = |metres| Clause::Distance {
-            subject: subject.clone().into(),
-            from: Phrase::Listener,
-            metres,
-        };
-        // By the box around the thing, which may be nearer than what is seen of it.
-        let metres = rounded_distance_m(sighting.distance_m);
-        let true_one = [metres, metres.saturating_sub(1)]
-            .into_iter()
-            .find(|metres| *metres > 0 && self.checker.check(&clause(*metres)).truth.is_true());
-        if let Some(metres) = true_one {
-            self.writer.say(Form::Claim(clause(metres)));
-        }
-    }
-
-    /// Says where a thing is to one of those that were named before: by the most telling relation, to the largest.
-    fn say_relation(
-        &mut self,
-        object: ObjectId,
-        subject: &Description,
-        before: &[(ObjectId, Description)],
-    ) -> bool {
-        let near = |other: ObjectId| {
-            let (own, other) = (self.scene().extent(object), self.scene().extent(other));
-            own.bounds.grown(MAX_BESIDE_M).intersects(&other.bounds)
-        };
-        let near: Vec<&(ObjectId, Description)> =
-            before.iter().filter(|(other, _)| near(*other)).collect();
-        let on_rug = |other: ObjectId| {
-            let pair = [object, other];
-            let [own, mark] = pair.map(|id| self.scene().extent(id).bounds);
-            pair.iter().any(|id| self.scene().facts(*id).is_rug()) && overlap_in_plan(&own, &mark)
-        };
-        for name in RELATIONS {
-            let held = |other: ObjectId| {
-                let [own, mark] = [object, other].map(|id| self.scene().extent(id).bounds);
-                let level = own.min.y < mark.max.y && mark.min.y < own.max.y;
-                let fits = match name {
-                    "above" => true,
-                    "left_of" | "right_of" if self.is_wide(object) => false,
-                    "left_of" | "right_of" if !self.is_beside_in_picture(object, other) => false,
-                    // Furniture that stands on a rug in part is not beside it, nor is the rug under it.
-                    "next_to" | "under" if on_rug(other) => false,
-                    // A chair at a table is not under it.
-                    "under" => own.max.y < mark.max.y,
-                    // A lamp on the ceiling is not to the left of a chair.
-                    _ => level,
-                };
-                let pair = [object, other].map(Term::Object);
-                fits && predicates::is_true(self.scene(), name, &pair, Some(&self.viewer))
-            };
-            let Some((_, landmark)) = near.iter().find(|(other, _)| held(*other)) else {
-                continue;
-            };
-            let arguments = vec![subject.clone().into(), landmark.clone().into()];
-            self.writer.say(claim(name, arguments));
-            return true;
-        }
-        false
-    }
-
     fn say(&mut self, limits: &ViewLimits) {
         if let Some(room) = self
             .room
@@ -438,10 +391,13 @@ impl ViewTeller<'_, '_> {
         let seen = Modifier::new("visible", []);
         let mut kinds = limits.kinds;
         for (side, objects) in &contents.sides {
+            let others = contents.sides.iter();
+            let others = others.filter(|(other, _)| other != side);
+            let beside: Vec<ObjectId> = others.flat_map(|(_, own)| own.iter().copied()).collect();
             let mut items = match *side {
                 Some(side) => {
                     let there = |other| self.holds(side, other);
-                    self.items(&self.with_look_alikes(objects, there), there)
+                    self.items(&self.with_look_alikes(objects, &beside, there), there)
                 }
                 None => self.items(objects, |_| true),
             };
@@ -467,7 +423,7 @@ impl ViewTeller<'_, '_> {
         self.say_places(&contents, limits);
         for ((carrier, name), objects) in &contents.carried {
             let there = |other| self.is_carried_by(other, *carrier, name);
-            let items = self.items(&self.with_look_alikes(objects, there), there);
+            let items = self.items(&self.with_look_alikes(objects, &[], there), there);
             let Some(carrier) = self.name(*carrier) else {
                 continue;
             };
@@ -476,7 +432,7 @@ impl ViewTeller<'_, '_> {
         }
         for (room, objects) in &contents.elsewhere {
             let there = |other| self.scene().room_of(other) == Some(*room);
-            let items = self.items(&self.with_look_alikes(objects, there), there);
+            let items = self.items(&self.with_look_alikes(objects, &[], there), there);
             let place = [
                 Modifier::new("in_room", [self.other_room(*room)]),
                 seen.clone(),
@@ -484,45 +440,6 @@ impl ViewTeller<'_, '_> {
             self.writer.there_are(&items, &place);
         }
     }
-
-    /// Says how far the largest things are, and where they are to each other.
-    fn say_places(&mut self, contents: &ViewContents, limits: &ViewLimits) {
-        let mut anchors: Vec<ObjectId> = contents
-            .sides
-            .iter()
-            .flat_map(|(_, objects)| objects.iter().copied())
-            .filter(|object| self.share(*object) >= LEAST_ANCHOR)
-            .collect();
-        anchors.sort_by(|p, q| self.share(*q).total_cmp(&self.share(*p)).then(p.cmp(q)));
-        let (mut relations, mut distances) = (limits.relations, limits.distances);
-        let mut before: Vec<(ObjectId, Description)> = Vec::new();
-        for object in anchors {
-            // What is told by its place already needs no other.
-            let Some(subject) = self.name(object).filter(|own| own.modifiers.is_empty()) else {
-                continue;
-            };
-            if !self.scene().facts(object).belongs_to_opening() {
-                // Of a rug that runs out of the picture nobody sees where it begins.
-                if distances > 0 && !self.scene().facts(object).is_rug() {
-                    let sighting = self.survey.objects[&object];
-                    self.say_distance(&subject, sighting);
-                    distances -= 1;
-                }
-                if relations > 0 && self.say_relation(object, &subject, &before) {
-                    relations -= 1;
-                }
-            }
-            before.push((object, subject));
-        }
-    }
-}
-
-/// Returns whether two boxes have ground in common.
-fn overlap_in_plan(one: &Aabb, other: &Aabb) -> bool {
-    one.min.x < other.max.x
-        && other.min.x < one.max.x
-        && one.min.z < other.max.z
-        && other.min.z < one.max.z
 }
 
 /// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
@@ -575,6 +492,7 @@ pub fn describe_views(
                 && scene.holder(**object).is_none()
                 && teller.holds("visible", **object)
                 && teller.shows_leaf(**object)
+                && !teller.is_overlooked(**object)
         });
         teller.told = told.map(|(object, _)| *object).collect();
         teller.say(&ViewLimits::of(options.length));

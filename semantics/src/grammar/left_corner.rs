@@ -1,15 +1,16 @@
 //! Which productions can begin at a word, so that a parser predicts no others.
 
 use super::Lexicon;
-use super::compile::{ArgumentKind, NonTerminal, Production, Symbol};
+use super::compile::{ArgumentKind, NonTerminal, Production, Productions, Symbol};
 use std::collections::BTreeMap;
+use std::sync::Arc;
 
 /// Productions by the first symbol of their right-hand side.
 #[derive(Clone, Debug, Default)]
 pub(super) struct LeftCorners {
     /// By the word, the class of an entry with its variant, a number in words or digits, or the category that they begin with.
-    words: BTreeMap<String, Vec<usize>>,
-    classes: BTreeMap<String, Vec<(usize, usize)>>,
+    words: Vec<Vec<usize>>,
+    classes: BTreeMap<Arc<str>, Vec<(usize, usize)>>,
     counts: Vec<usize>,
     ordinals: Vec<usize>,
     digits: Vec<usize>,
@@ -17,15 +18,16 @@ pub(super) struct LeftCorners {
 }
 
 impl LeftCorners {
-    pub(super) fn gather(productions: &[Production], categories: usize) -> Self {
+    pub(super) fn gather(productions: &[Production], categories: usize, words: usize) -> Self {
         let mut found = Self {
+            words: vec![Vec::new(); words],
             categories: vec![Vec::new(); categories],
             ..Self::default()
         };
         for (at, production) in productions.iter().enumerate() {
             match production.symbols.first() {
                 Some(Symbol::Word(word)) => {
-                    found.words.entry(word.clone()).or_default().push(at);
+                    found.words[*word].push(at);
                 }
                 Some(Symbol::Argument(_, kind)) => match kind {
                     ArgumentKind::Rules(category) => found.categories[*category].push(at),
@@ -49,15 +51,16 @@ impl LeftCorners {
         lexicon: &Lexicon,
         words: &[String],
         at: usize,
-        productions: &[Production],
+        productions: &Productions,
     ) -> Vec<bool> {
-        let mut starts = vec![false; productions.len()];
+        let mut starts = vec![false; productions.all.len()];
         let Some(word) = words.get(at) else {
             return starts;
         };
-        let mut open: Vec<usize> = self.words.get(word).cloned().unwrap_or_default();
+        let of_word = productions.words.find(word).map(|word| &self.words[word]);
+        let mut open: Vec<usize> = of_word.cloned().unwrap_or_default();
         for found in lexicon.matches_at(words, at) {
-            let class = self.classes.get(&lexicon.entry(found.entry).class);
+            let class = self.classes.get(lexicon.entry(found.entry).class.as_str());
             let own = class.into_iter().flatten();
             let own = own.filter(|(variant, _)| *variant == found.variant);
             open.extend(own.map(|(_, production)| *production));
@@ -76,7 +79,7 @@ impl LeftCorners {
             if std::mem::replace(&mut starts[production], true) {
                 continue;
             }
-            let result: NonTerminal = productions[production].result;
+            let result: NonTerminal = productions.all[production].result;
             if !std::mem::replace(&mut reached[result], true) {
                 open.extend(&self.categories[result]);
             }

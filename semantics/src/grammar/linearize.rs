@@ -30,8 +30,7 @@ impl Grammar {
         else {
             return None;
         };
-        let of_function = self.productions.of_function.get(function)?;
-        let productions = of_function.get(&category)?;
+        let productions = self.productions.of_function(function)?.get(&category)?;
         let productions = || productions.iter().map(|at| &self.productions.all[*at]);
         let mut wordings: Vec<usize> = productions().filter_map(|one| one.wording).collect();
         wordings.dedup();
@@ -57,7 +56,10 @@ impl Grammar {
         let mut phrases = Vec::with_capacity(symbols.len());
         for symbol in symbols {
             match symbol {
-                Symbol::Word(word) => phrases.push(LinearizedNode::Word(word.clone())),
+                Symbol::Word(word) => {
+                    let word = self.productions.words.name(*word);
+                    phrases.push(LinearizedNode::Word(word.to_owned()));
+                }
                 Symbol::Argument(at, kind) => {
                     let part = self.linearize_argument(kind, &arguments[*at], choose)?;
                     phrases.push(LinearizedNode::Part(*at, part));
@@ -76,10 +78,10 @@ impl Grammar {
         match (kind, tree) {
             (ArgumentKind::Rules(category), _) => self.linearize_function(tree, *category, choose),
             (ArgumentKind::Entry(class, variant), Tree::Entry { class: own, id })
-                if class == own =>
+                if **class == **own =>
             {
                 let forms = self.lexicon.find(class, id)?.forms.get(*variant)?;
-                let chosen = if self.drawn.contains(class) && forms.len() > 1 {
+                let chosen = if self.drawn.contains(&**class) && forms.len() > 1 {
                     choose(forms.len())
                 } else {
                     0

@@ -14,6 +14,7 @@ mod file;
 mod left_corner;
 mod lexicon;
 mod linearize;
+mod name_table;
 mod nearest;
 mod paraphrase;
 mod parse;
@@ -29,10 +30,10 @@ pub use parse::Parse;
 pub use text::Span;
 pub use tree::Tree;
 
-use compile::{NonTerminal, Productions, Symbol};
+use compile::{NonTerminal, Productions};
 use file::GrammarFile;
 use paraphrase::Paraphrases;
-use std::collections::{BTreeSet, HashSet};
+use std::collections::BTreeSet;
 use std::sync::Arc;
 
 /// The rules and the lexicon of a language.
@@ -40,8 +41,6 @@ use std::sync::Arc;
 pub struct Grammar {
     productions: Arc<Productions>,
     start: Vec<NonTerminal>,
-    /// The words that occur in rules.
-    words: Arc<BTreeSet<String>>,
     /// The lexicon classes of whose entries any form may be said.
     drawn: Arc<BTreeSet<String>>,
     paraphrases: Arc<Paraphrases>,
@@ -58,31 +57,18 @@ impl Grammar {
         let productions = compile::compile(&file)?;
         let mut start = Vec::new();
         for category in &file.start {
-            let own = productions.numbers.iter();
-            let own = own.filter(|((name, _), _)| name == category);
-            let before = start.len();
-            start.extend(own.map(|(_, number)| *number));
-            if start.len() == before {
-                let known = productions.numbers.keys();
+            let Some(own) = productions.of_category.get(category) else {
+                let known = productions.of_category.keys();
                 return Err(GrammarError::Unknown {
                     rule: "start".to_owned(),
                     kind: "category",
                     name: category.clone(),
-                    known: known.map(|(name, _)| name.clone()).collect(),
+                    known: known.cloned().collect(),
                 });
-            }
+            };
+            start.extend(own);
         }
-        let symbols = productions.all.iter().flat_map(|one| &one.symbols);
-        // Each word stands in many rules: hashing is faster than sorting all of them.
-        let words: HashSet<&str> = symbols
-            .filter_map(|symbol| match symbol {
-                Symbol::Word(word) => Some(word.as_str()),
-                Symbol::Argument(..) => None,
-            })
-            .collect();
-        let words: BTreeSet<String> = words.into_iter().map(str::to_owned).collect();
         Ok(Self {
-            words: Arc::new(words),
             drawn: Arc::new(file.drawn.into_iter().collect()),
             paraphrases: Arc::new(Paraphrases::new(&file.paraphrases, file.endings)),
             productions: Arc::new(productions),
@@ -102,7 +88,6 @@ impl Grammar {
         Self {
             productions: self.productions.clone(),
             start: self.start.clone(),
-            words: self.words.clone(),
             drawn: self.drawn.clone(),
             paraphrases: self.paraphrases.clone(),
             lexicon,
@@ -115,7 +100,7 @@ impl Grammar {
         tree: &Tree,
         choose: WordingChooser<'_>,
     ) -> Option<(String, Vec<Span>)> {
-        let own = self.productions.of_function.get(tree.function()?)?.keys();
+        let own = self.productions.of_function(tree.function()?)?.keys();
         let phrases = (self.start.iter().chain(own))
             .find_map(|category| self.linearize_function(tree, *category, choose))?;
         Some(text::write(&phrases))
@@ -123,7 +108,7 @@ impl Grammar {
 
     /// Returns whether the word, in lower case, occurs in the rules or the lexicon.
     pub fn has_word(&self, word: &str) -> bool {
-        self.words.contains(word) || self.lexicon.has_word(word)
+        self.productions.words.find(word).is_some() || self.lexicon.has_word(word)
     }
 
     /// Returns normalized words with endings set apart and phrases replaced by others that mean the same.
@@ -139,14 +124,13 @@ impl Grammar {
 
     /// The words of the rules and of the lexicon, in lower case; a word in both comes twice.
     pub fn words(&self) -> impl Iterator<Item = &str> {
-        let own = self.words.iter().map(String::as_str);
+        let own = self.productions.words.iter();
         own.chain(self.lexicon.words())
     }
 
     /// The names of all functions, each once.
     pub fn functions(&self) -> BTreeSet<&str> {
-        let all = self.productions.all.iter();
-        all.map(|one| one.function.as_str()).collect()
+        self.productions.functions.iter().collect()
     }
 }
 

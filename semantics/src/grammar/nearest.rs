@@ -34,7 +34,7 @@ impl Grammar {
         if length > 40 {
             return Vec::new();
         }
-        let rules = self.words.iter().map(|known| (true, known.as_str()));
+        let rules = self.productions.words.iter().map(|known| (true, known));
         let known = rules.chain(self.lexicon.entry_words().map(|known| (false, known)));
         let mut found: Vec<(usize, usize, bool, &str)> = known
             .filter(|(_, known)| known.chars().count().abs_diff(length) <= length.div_ceil(3))

@@ -79,9 +79,8 @@ type Reading = (u32, TreeId);
 type PartReading = (u32, Vec<Option<TreeId>>);
 
 /// What was read of each category over each span, and of each item, each worked out once.
-#[derive(Default)]
-struct ParseMemo {
-    nodes: TreeInterner,
+struct ParseMemo<'a> {
+    nodes: TreeInterner<'a>,
     spans: BTreeMap<(NonTerminal, usize, usize), Vec<Reading>>,
     items: BTreeMap<(Item, usize), Vec<PartReading>>,
 }
@@ -99,6 +98,8 @@ fn keep_cheapest<T>(found: &mut Vec<T>, cost: impl Fn(&T) -> u32) {
 struct Parser<'a> {
     grammar: &'a Grammar,
     words: &'a [String],
+    /// The numbers of words that occur in rules.
+    word_numbers: Vec<Option<usize>>,
     sets: Vec<ItemSet>,
     /// Whether each production can begin at the place that is worked on.
     starts: Vec<bool>,
@@ -138,14 +139,14 @@ impl Parser<'_> {
         };
         let lexicon = &self.grammar.lexicon;
         match symbol {
-            Symbol::Word(expected) if expected == word => {
+            Symbol::Word(expected) if self.word_numbers[at] == Some(*expected) => {
                 self.advance(item, at, at + 1, Child::Word);
             }
             Symbol::Argument(_, ArgumentKind::Entry(class, variant)) => {
                 let found: Vec<_> = lexicon
                     .matches_at(self.words, at)
                     .filter(|found| {
-                        found.variant == *variant && lexicon.entry(found.entry).class == *class
+                        found.variant == *variant && lexicon.entry(found.entry).class == **class
                     })
                     .collect();
                 for found in found {
@@ -178,10 +179,8 @@ impl Parser<'_> {
             return;
         }
         let productions = &self.grammar.productions;
-        let (lexicon, all) = (&self.grammar.lexicon, &productions.all);
-        self.starts = productions
-            .left_corners
-            .starting_at(lexicon, self.words, at, all);
+        let corners = &productions.left_corners;
+        self.starts = corners.starting_at(&self.grammar.lexicon, self.words, at, productions);
         if at == 0 {
             for start in &self.grammar.start {
                 // No item waits for the start category: it is predicted once, here.
@@ -224,7 +223,7 @@ impl Parser<'_> {
         category: NonTerminal,
         origin: usize,
         end: usize,
-        known: &mut ParseMemo,
+        known: &mut ParseMemo<'_>,
     ) -> Vec<Reading> {
         if let Some(found) = known.spans.get(&(category, origin, end)) {
             return found.clone();
@@ -237,7 +236,7 @@ impl Parser<'_> {
                 let Some(arguments) = arguments.into_iter().collect::<Option<Vec<TreeId>>>() else {
                     continue;
                 };
-                let node = known.nodes.apply(&production.function, arguments);
+                let node = known.nodes.apply(production.function, arguments);
                 found.push((cost + production.cost, node));
             }
         }
@@ -253,7 +252,12 @@ impl Parser<'_> {
     }
 
     /// The arguments that were read before the dot of an item, with their cost.
-    fn argument_readings(&self, item: Item, set: usize, known: &mut ParseMemo) -> Vec<PartReading> {
+    fn argument_readings(
+        &self,
+        item: Item,
+        set: usize,
+        known: &mut ParseMemo<'_>,
+    ) -> Vec<PartReading> {
         let production = &self.grammar.productions.all[item.production];
         if item.dot == 0 {
             return vec![(0, vec![None; production.arity])];
@@ -296,7 +300,7 @@ impl Parser<'_> {
         symbol: &Symbol,
         child: Child,
         end: usize,
-        known: &mut ParseMemo,
+        known: &mut ParseMemo<'_>,
     ) -> Vec<(u32, Option<TreeId>)> {
         match child {
             Child::Word => vec![(0, None)],
@@ -343,14 +347,14 @@ impl Parser<'_> {
                 return;
             };
             let name = match symbol {
-                Symbol::Word(word) => word.clone(),
+                Symbol::Word(word) => productions.words.name(*word).to_owned(),
                 Symbol::Argument(_, ArgumentKind::Rules(category)) => {
                     open.push(*category);
                     return;
                 }
                 Symbol::Argument(_, ArgumentKind::Entry(class, variant)) => {
                     let entries = found.iter().map(|found| lexicon.entry(found.entry));
-                    for entry in entries.filter(|entry| entry.class == *class) {
+                    for entry in entries.filter(|entry| entry.class == **class) {
                         let form = entry.forms.get(*variant).and_then(|forms| forms.first());
                         agreeing.extend(form.map(|words| words.join(" ")));
                     }
@@ -389,6 +393,10 @@ impl Grammar {
         let mut parser = Parser {
             grammar: self,
             words,
+            word_numbers: words
+                .iter()
+                .map(|word| self.productions.words.find(word))
+                .collect(),
             sets: (0..=words.len()).map(|_| ItemSet::default()).collect(),
             starts: Vec::new(),
         };
@@ -398,7 +406,11 @@ impl Grammar {
         }
         let filled = parser.sets.iter().rposition(|set| !set.order.is_empty());
         let understood = filled.unwrap_or(0);
-        let mut known = ParseMemo::default();
+        let mut known = ParseMemo {
+            nodes: TreeInterner::new(&self.productions.functions),
+            spans: BTreeMap::new(),
+            items: BTreeMap::new(),
+        };
         let mut trees: Vec<(u32, Tree)> = Vec::new();
         for start in &self.start {
             let readings = parser.readings(*start, 0, words.len(), &mut known);

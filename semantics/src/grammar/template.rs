@@ -1,6 +1,7 @@
 //! Templates of text: words, arguments and words that agree with them.
 
 use super::GrammarError;
+use std::borrow::Cow;
 
 /// A variant of a category, such as singular or plural.
 #[derive(Clone, Copy, Debug, PartialEq, Eq)]
@@ -15,7 +16,7 @@ pub(super) enum VariantPattern<'a> {
 #[derive(Clone, Debug, PartialEq, Eq)]
 pub(super) enum TemplateElement<'a> {
     /// A word as it stands, in lower case, or a punctuation mark.
-    Word(String),
+    Word(Cow<'a, str>),
     /// `[be.n]`: a word of the grammar's own in a variant.
     Inflected(&'a str, VariantPattern<'a>),
     /// `{1.n}`: an argument, counted from 0 here.
@@ -27,6 +28,18 @@ pub(super) fn category(text: &str) -> (&str, VariantPattern<'_>) {
     match text.split_once('.') {
         Some((name, variant)) => (name, VariantPattern::Named(variant)),
         None => (text, VariantPattern::Any),
+    }
+}
+
+/// A word in lower case.
+fn lower_case(word: &str) -> Cow<'_, str> {
+    if word
+        .bytes()
+        .all(|letter| letter.is_ascii() && !letter.is_ascii_uppercase())
+    {
+        Cow::Borrowed(word)
+    } else {
+        Cow::Owned(word.to_lowercase())
     }
 }
 
@@ -59,7 +72,7 @@ pub(super) fn read(text: &str, arity: usize) -> Result<Vec<TemplateElement<'_>>,
             let (name, variant) = category(inside);
             pieces.push(TemplateElement::Inflected(name, variant));
         } else {
-            pieces.push(TemplateElement::Word(part.to_lowercase()));
+            pieces.push(TemplateElement::Word(lower_case(part)));
         }
     }
     if pieces.is_empty() {
@@ -80,7 +93,7 @@ mod tests {
             [
                 TemplateElement::Argument(0, named("n")),
                 TemplateElement::Inflected("be", named("n")),
-                TemplateElement::Word("on".to_owned()),
+                TemplateElement::Word("on".into()),
                 TemplateElement::Argument(1, VariantPattern::Any),
             ]
         );

@@ -1,6 +1,7 @@
 //! Trees with shared branches: the readings of a text, of which most differ in few places.
 
 use super::Tree;
+use super::name_table::NameTable;
 use std::cell::RefCell;
 use std::cmp::Ordering;
 use std::collections::{BTreeMap, HashMap};
@@ -17,17 +18,25 @@ enum Node {
 }
 
 /// Trees, each once.
-#[derive(Default)]
-pub(super) struct TreeInterner {
+pub(super) struct TreeInterner<'a> {
     all: Vec<Node>,
     ids: BTreeMap<Node, TreeId>,
-    functions: Vec<String>,
-    numbers: BTreeMap<String, usize>,
+    functions: &'a NameTable,
     /// The order of pairs that were compared; looked up only.
     compared: RefCell<HashMap<(TreeId, TreeId), Ordering>>,
 }
 
-impl TreeInterner {
+impl<'a> TreeInterner<'a> {
+    /// No trees yet, of these functions.
+    pub(super) fn new(functions: &'a NameTable) -> Self {
+        Self {
+            all: Vec::new(),
+            ids: BTreeMap::new(),
+            functions,
+            compared: RefCell::default(),
+        }
+    }
+
     fn add(&mut self, node: Node) -> TreeId {
         if let Some(known) = self.ids.get(&node) {
             return *known;
@@ -43,15 +52,9 @@ impl TreeInterner {
         self.add(Node::Leaf(leaf))
     }
 
-    /// Adds a function of trees.
-    pub(super) fn apply(&mut self, function: &str, arguments: Vec<TreeId>) -> TreeId {
-        let number = self.numbers.get(function).copied().unwrap_or_else(|| {
-            let number = self.functions.len();
-            self.functions.push(function.to_owned());
-            self.numbers.insert(function.to_owned(), number);
-            number
-        });
-        self.add(Node::Apply(number, arguments))
+    /// Adds a function, by its number, of trees.
+    pub(super) fn apply(&mut self, function: usize, arguments: Vec<TreeId>) -> TreeId {
+        self.add(Node::Apply(function, arguments))
     }
 
     /// Compares two trees as [`Tree`] does.
@@ -68,7 +71,9 @@ impl TreeInterner {
                 self.compared.borrow_mut().insert((a, b), order);
                 order
             }
-            (Node::Apply(f, _), Node::Apply(g, _)) => self.functions[*f].cmp(&self.functions[*g]),
+            (Node::Apply(f, _), Node::Apply(g, _)) => {
+                self.functions.name(*f).cmp(self.functions.name(*g))
+            }
             (Node::Apply(..), Node::Leaf(_)) => Ordering::Less,
             (Node::Leaf(_), Node::Apply(..)) => Ordering::Greater,
             (Node::Leaf(a), Node::Leaf(b)) => a.cmp(b),
@@ -76,10 +81,10 @@ impl TreeInterner {
     }
 
     /// Compares two lists of trees, the first difference deciding.
-    pub(super) fn compare_all<'a>(
+    pub(super) fn compare_all<'b>(
         &self,
-        a: impl Iterator<Item = &'a TreeId>,
-        b: impl Iterator<Item = &'a TreeId>,
+        a: impl Iterator<Item = &'b TreeId>,
+        b: impl Iterator<Item = &'b TreeId>,
     ) -> Ordering {
         let mut b = b;
         for one in a {
@@ -101,7 +106,7 @@ impl TreeInterner {
     pub(super) fn tree(&self, node: TreeId) -> Tree {
         match &self.all[node.0] {
             Node::Apply(function, arguments) => Tree::Apply {
-                function: self.functions[*function].clone(),
+                function: self.functions.name(*function).to_owned(),
                 arguments: arguments.iter().map(|one| self.tree(*one)).collect(),
             },
             Node::Leaf(leaf) => leaf.clone(),

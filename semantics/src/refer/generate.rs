@@ -111,7 +111,11 @@ pub(crate) fn relation_modifiers(scene: &SemanticScene<'_>, target: ObjectId) ->
 }
 
 /// Returns whether a neighbour of a thing stands between it and another one: readers call that the nearer one's neighbour.
-fn stands_between(scene: &SemanticScene<'_>, target: ObjectId, landmark: ObjectId) -> bool {
+pub(crate) fn stands_between(
+    scene: &SemanticScene<'_>,
+    target: ObjectId,
+    landmark: ObjectId,
+) -> bool {
     let [from, to] = [target, landmark].map(|id| scene.extent(id).bounds.center());
     let way = Vec2::new(to.x - from.x, to.z - from.z);
     let reaches_over = |other: &ObjectId| {

@@ -27,6 +27,8 @@ pub struct Sighting {
     pub unhidden: f32,
     /// The tangents of the leftmost and the rightmost ray that meets it: -1 at the left edge of the picture, 1 at the right.
     pub span: [f32; 2],
+    /// The tangent of the lowest ray that meets it: -1 at the lower edge of the picture.
+    pub bottom: f32,
     /// The distance from the eye to the nearest point that is seen, m.
     pub distance_m: f32,
     /// That point, in the house.
@@ -52,6 +54,7 @@ struct RayCounts {
     first: u32,
     any: u32,
     span: [f32; 2],
+    bottom: f32,
     nearest_m: f32,
     nearest: Vec3,
 }
@@ -61,6 +64,7 @@ impl RayCounts {
         first: 0,
         any: 0,
         span: [f32::INFINITY, f32::NEG_INFINITY],
+        bottom: f32::INFINITY,
         nearest_m: f32::INFINITY,
         nearest: Vec3::ZERO,
     };
@@ -70,6 +74,7 @@ impl RayCounts {
             share: self.first as f32 / (RAYS * RAYS) as f32,
             unhidden: self.first as f32 / self.any as f32,
             span: self.span,
+            bottom: self.bottom,
             distance_m: self.nearest_m,
             nearest: self.nearest,
         })
@@ -110,6 +115,7 @@ impl ViewSurvey {
                     survey.count_surface(rays.owner_and_material(hit));
                     own.first += 1;
                     own.span = [own.span[0].min(x), own.span[1].max(x)];
+                    own.bottom = own.bottom.min(y);
                     if hit.distance_m < own.nearest_m {
                         own.nearest_m = hit.distance_m;
                         own.nearest = eye + ray.direction * hit.distance_m;
