@@ -6,7 +6,8 @@ use crate::error::SemanticsError;
 pub(crate) struct CsvTable<'a> {
     file: &'static str,
     head: Vec<&'a str>,
-    rows: Vec<Vec<&'a str>>,
+    /// Shape (row, column).
+    fields: Vec<&'a str>,
 }
 
 /// One row of a [`CsvTable`].
@@ -20,29 +21,26 @@ impl<'a> CsvTable<'a> {
     pub(crate) fn parse(file: &'static str, text: &'a str) -> Result<Self, SemanticsError> {
         let mut lines = text.lines();
         let head: Vec<&str> = lines.next().unwrap_or_default().split(',').collect();
-        let mut rows = Vec::new();
+        let mut fields = Vec::with_capacity(text.len() / 4);
         for (k, line) in lines.enumerate() {
-            let fields: Vec<&str> = line.split(',').collect();
-            if fields.len() != head.len() || line.contains('"') {
-                let what = format!(
-                    "{} fields, allowed are {} without quotes",
-                    fields.len(),
-                    head.len()
-                );
+            let before = fields.len();
+            fields.extend(line.split(','));
+            let found = fields.len() - before;
+            if found != head.len() || line.contains('"') {
+                let what = format!("{found} fields, allowed are {} without quotes", head.len());
                 return Err(SemanticsError::Table {
                     file,
                     line: k + 2,
                     what,
                 });
             }
-            rows.push(fields);
         }
-        Ok(Self { file, head, rows })
+        Ok(Self { file, head, fields })
     }
 
     /// The rows in file order.
     pub(crate) fn rows(&self) -> impl Iterator<Item = CsvRecord<'_, 'a>> {
-        (0..self.rows.len()).map(|index| CsvRecord { table: self, index })
+        (0..self.fields.len() / self.head.len()).map(|index| CsvRecord { table: self, index })
     }
 }
 
@@ -60,7 +58,7 @@ impl<'a> CsvRecord<'_, 'a> {
     pub(crate) fn text(&self, column: &str) -> Result<&'a str, SemanticsError> {
         let place = self.table.head.iter().position(|name| *name == column);
         place
-            .map(|k| self.table.rows[self.index][k])
+            .map(|k| self.table.fields[self.index * self.table.head.len() + k])
             .ok_or_else(|| self.error(format!("no column {column:?}")))
     }
 

@@ -1,6 +1,6 @@
 //! The entry point: a house with its semantics.
 
-use crate::color::{ColorVocabulary, MaterialColors, color_words};
+use crate::color::{self, ColorVocabulary, MaterialColors, color_words};
 use crate::doorways::RoomDoorway;
 use crate::extent_cache::ExtentCache;
 use crate::facts::ObjectFacts;
@@ -50,9 +50,10 @@ impl Semantics {
         let ((), (paints, structure, rest_extents)) = threads.join(
             || house.bake_geometry(threads),
             || {
-                // Whoever asks for facts goes on to say them. One thread compiles the grammar while the other bakes; they
-                // share what follows.
+                // Whoever asks for facts goes on to say them. One thread compiles the grammar and reads the names of colours, for
+                // which both would wait later, while the other bakes; they share what follows.
                 Language::english();
+                color::read_tables();
                 (
                     MaterialColors::gather(house),
                     structure_outlines(house),

@@ -7,6 +7,7 @@ mod paint;
 mod pattern;
 mod vocabulary;
 
+pub(crate) use naming::read_tables;
 pub use naming::speakers_disagree;
 pub use oklab::Oklab;
 pub(crate) use paint::MaterialColors;

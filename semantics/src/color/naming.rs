@@ -49,7 +49,7 @@ impl ColorNamingModel {
             let place = corner(at.map(|x: i32| x / CELL as i32))
                 .ok_or_else(|| row.error(format!("{at:?} is outside of the grid")))?;
             for (share, word) in naming.survey[place].iter_mut().zip(WORDS) {
-                *share = row.number::<f32>(word)? / 1000.0;
+                *share = f32::from(row.number::<u16>(word)?) / 1000.0;
             }
         }
         let table = CsvTable::parse("colors/naming_things.csv", things)?;
@@ -159,6 +159,11 @@ const DIVIDED: f32 = 0.4;
 /// The same between blue and green: readers of descriptions who may use any word call what is above it teal (7 of 7 things of two houses between
 /// 0.25 and 0.32 that were told as blue).
 const DIVIDED_TEAL: f32 = 0.2;
+
+/// Reads the tables of names, which the first word of a colour does else.
+pub(crate) fn read_tables() {
+    ColorNamingModel::shared();
+}
 
 /// The places in [`WORDS`] of the words that most and next most answers give to a colour in linear light, each component 0 to 1, of a
 /// surface under white light, and the share of the second by that of the first.

@@ -22,7 +22,9 @@ const SORT_SHARE: f32 = 0.2;
 /// Least difference in chroma between two tints of one sort, in `OKLab`: pale teal and cream are as light as shades of one colour and are
 /// two to people.
 const TINTS_APART: f32 = 0.04;
-/// Mean distance of shades from their tint, by that of both tints, up to which they lie in two heaps: evenly spread ones have 0.25.
+/// Largest number of tints of a sort.
+const MOST_TINTS: usize = 3;
+/// Mean distance of shades from their tint, by that of the nearest two tints, up to which they lie in heaps: evenly spread ones have 0.25.
 const HEAP: f32 = 0.2;
 /// Approximate number of pixels by which an image is sampled.
 const PIXELS: usize = 1024;
@@ -118,7 +120,7 @@ impl MaterialColors {
 /// The colours of an image times `base`: the sorts of at least [`SORT_SHARE`] and what is left, or the only one, if at least
 /// [`DOMINANT_SHARE`] has it.
 ///
-/// A sort is what lies within [`SHADE`] of its own mean; one of [two tints](two_tints) counts as two. The largest is sought from some of the pixels that lie in no sort found
+/// A sort is what lies within [`SHADE`] of its own mean; one of several [`tints`] counts as several. The largest is sought from some of the pixels that lie in no sort found
 /// before, so that neither a pattern's ground nor a grain about its mean is missed.
 /// `decoded`: linear light of every byte. Shape (256,).
 fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> MaterialPalette {
@@ -160,8 +162,8 @@ fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> M
             break;
         }
         let share = |count: usize| count as f32 / whole;
-        match two_tints(&sort, SORT_SHARE * whole) {
-            Some(tints) => found.extend(tints.map(|(linear, count)| ColorShare {
+        match tints(&sort, SORT_SHARE * whole) {
+            Some(tints) => found.extend(tints.into_iter().map(|(linear, count)| ColorShare {
                 linear: Some(linear),
                 share: share(count),
             })),
@@ -190,9 +192,14 @@ fn texture_palette(texture: &Texture, base: [f32; 3], decoded: &[f32; 256]) -> M
 /// The mean of the largest sort of colour among `shades`, which are some.
 fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
     let mut best = ([0.0; 3], 0);
+    let mut found: Vec<Oklab> = Vec::new();
     // From pixels alone: the mean of two sorts may lie near enough to both.
     for k in 0..SEEDS {
-        let mut middle = shades[shades.len() * k / SEEDS].0;
+        let (mut middle, seed) = shades[shades.len() * k / SEEDS];
+        // What lies about the middle of a sort leads there again.
+        if found.iter().any(|own| own.distance(seed) <= 0.5 * SHADE) {
+            continue;
+        }
         let mut size = 0;
         for _ in 0..ROUNDS {
             let lab = Oklab::from_linear(middle);
@@ -204,6 +211,7 @@ fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
             }
             middle = moved;
         }
+        found.push(Oklab::from_linear(middle));
         if size > best.1 {
             best = (middle, size);
         }
@@ -215,51 +223,73 @@ fn largest_cluster_mean(shades: &[Shade]) -> [f32; 3] {
     best.0
 }
 
-/// The two tints of a sort of colour with their numbers of shades, the larger first, if its shades lie in two heaps of at least
-/// `least` shades by their chroma (2-means, from the two shades farthest apart).
-fn two_tints(shades: &[Shade], least: f32) -> Option<[([f32; 3], usize); 2]> {
-    let chroma = |shade: &Shade| Vec2::new(shade.1.a, shade.1.b);
-    let farthest_from = |from: Vec2| {
-        let all = shades.iter().map(chroma);
-        all.max_by(|p, q| p.distance(from).total_cmp(&q.distance(from)))
-    };
-    let one = farthest_from(chroma(shades.first()?))?;
-    let mut middles = [one, farthest_from(one)?];
-    let is_second = |shade: &Shade, [one, other]: [Vec2; 2]| {
-        chroma(shade).distance(other) < chroma(shade).distance(one)
-    };
-    let mut counts = [0; 2];
-    for _ in 0..ROUNDS {
-        let mut sums = [Vec2::ZERO; 2];
-        counts = [0; 2];
-        for shade in shades {
-            let k = usize::from(is_second(shade, middles));
-            sums[k] += chroma(shade);
-            counts[k] += 1;
-        }
-        if counts.contains(&0) {
-            return None;
-        }
-        middles = std::array::from_fn(|k| sums[k] / counts[k] as f32);
+/// The tints of a sort of colour with their numbers of shades, the largest first, if its shades lie in two or three heaps of at least
+/// `least` by their chroma; else none.
+fn tints(shades: &[Shade], least: f32) -> Option<Vec<([f32; 3], usize)>> {
+    let number = shades.len() as f32;
+    let mut sums = [Vec2::ZERO; 2];
+    for (_, shade) in shades {
+        let chroma = Vec2::new(shade.a, shade.b);
+        sums[0] += chroma;
+        sums[1] += chroma * chroma;
     }
-    let apart = middles[0].distance(middles[1]);
-    let spread = shades.iter().map(|shade| {
-        let own = middles[usize::from(is_second(shade, middles))];
-        chroma(shade).distance(own)
-    });
-    let spread = spread.sum::<f32>() / shades.len() as f32;
-    if apart < TINTS_APART
-        || counts.iter().any(|count| (*count as f32) < least)
-        || spread > HEAP * apart
-    {
+    let [mean, squares] = sums.map(|sum| sum / number);
+    let variance = (squares - mean * mean).element_sum();
+    // Two heaps with shares p and 1 - p that lie d apart have at least p (1 - p) d^2: grain has less.
+    let share = least / number;
+    if variance < share * (1.0 - share) * TINTS_APART * TINTS_APART {
         return None;
     }
-    let mut tints = [false, true].map(|second| {
-        let own = shades
-            .iter()
-            .filter(|shade| is_second(shade, middles) == second);
-        mean(own.map(|(linear, _)| *linear))
-    });
+    let mut fits = (2..=MOST_TINTS).take_while(|count| *count as f32 * least <= number);
+    fits.find_map(|count| heaps(shades, count, least))
+}
+
+/// As [`tints`], of `count` heaps: k-means, from shades each farthest from those before.
+fn heaps(shades: &[Shade], count: usize, least: f32) -> Option<Vec<([f32; 3], usize)>> {
+    let chroma = |shade: &Shade| Vec2::new(shade.1.a, shade.1.b);
+    let nearest = |at: Vec2, middles: &[Vec2]| {
+        let all = middles.iter().map(|middle| middle.distance(at)).enumerate();
+        all.min_by(|p, q| p.1.total_cmp(&q.1)).unwrap_or((0, 0.0))
+    };
+    let mut middles = vec![chroma(shades.first()?)];
+    for k in 0..=count {
+        let all = shades.iter().map(chroma);
+        let distance = |at: &Vec2| nearest(*at, &middles).1;
+        middles.extend(all.max_by(|p, q| distance(p).total_cmp(&distance(q))));
+        if k == 0 {
+            // The first shade is as good as any; the one farthest from it lies at an end.
+            middles.remove(0);
+        }
+    }
+    middles.truncate(count);
+    let mut own = vec![0; shades.len()];
+    for _ in 0..ROUNDS {
+        let mut sums = vec![(Vec2::ZERO, 0_usize); count];
+        for (shade, own) in shades.iter().zip(&mut own) {
+            *own = nearest(chroma(shade), &middles).0;
+            sums[*own].0 += chroma(shade);
+            sums[*own].1 += 1;
+        }
+        if sums.iter().any(|(_, count)| (*count as f32) < least) {
+            return None;
+        }
+        let moved = sums.into_iter().map(|(sum, count)| sum / count as f32);
+        middles = moved.collect();
+    }
+    let pairs = (0..count).flat_map(|p| (0..p).map(move |q| (p, q)));
+    let apart = pairs.map(|(p, q)| middles[p].distance(middles[q]));
+    let apart = apart.fold(f32::INFINITY, f32::min);
+    let spread = shades.iter().zip(&own);
+    let spread = spread.map(|(shade, own)| chroma(shade).distance(middles[*own]));
+    let spread = spread.sum::<f32>() / shades.len() as f32;
+    if apart < TINTS_APART || spread > HEAP * apart {
+        return None;
+    }
+    let tint = |k: usize| {
+        let members = shades.iter().zip(&own).filter(|(_, own)| **own == k);
+        mean(members.map(|((linear, _), _)| *linear))
+    };
+    let mut tints: Vec<_> = (0..count).map(tint).collect();
     tints.sort_by_key(|tint| std::cmp::Reverse(tint.1));
     Some(tints)
 }
@@ -442,6 +472,13 @@ mod tests {
         };
         // Basic terms have no teal.
         assert_eq!(words(&image(rug)), ["blue", "white"]);
+        // Crimson and dark green between brown ones, all of them dark.
+        let plaid = |x: usize, y: usize| match (x % 16 < 8, y % 16 < 8) {
+            (true, true) => [124, 45, 53],
+            (false, false) => [60, 90, 69],
+            _ => [93, 68, 61],
+        };
+        assert_eq!(words(&image(plaid)), ["brown", "green", "red"]);
         let thirds = |_, y: usize| [[150, 190, 230], [40, 110, 50], [180, 30, 30]][y * 3 / 64];
         assert_eq!(words(&image(thirds)), ["blue", "green", "red"]);
         // All of it see-through.

@@ -135,9 +135,13 @@ impl ViewTeller<'_, '_> {
     /// Returns whether a thing reaches out of the picture at a side, or is hidden in part.
     fn is_cut(&self, object: ObjectId) -> bool {
         let seen = self.survey.objects.get(&object);
-        seen.is_some_and(|own| {
-            own.span[0] <= -BORDER || own.span[1] >= BORDER || own.unhidden < WHOLE
-        })
+        let to_camera = self.viewer.world_from_camera.inverse();
+        // Of a pair of curtains one side may be out of the picture, and the other wholly in it.
+        let mut corners = self.scene().extent(object).bounds.corners().into_iter();
+        corners.any(|corner| {
+            let corner = to_camera.transform_point(corner);
+            corner.x.abs() > -corner.z
+        }) || seen.is_some_and(|own| own.unhidden < WHOLE)
     }
 
     /// Returns whether something that moves is seen of a door: without its leaf people see an opening.

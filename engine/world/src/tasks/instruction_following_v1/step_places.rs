@@ -9,16 +9,36 @@ use crate::world::World;
 use dwell_scene::navigation::NavCell;
 use dwell_scene::{AgentBody, AgentId, ObjectId, RoomId};
 use dwell_semantics::instruct::{InstructionGoal, StepCondition};
+use glam::Vec3;
 use std::collections::BTreeMap;
 use std::sync::Arc;
 
 /// Cells from which a thing must be reached: from fewer, a view that turns by steps may miss it everywhere.
 const LEAST_CELLS: usize = 6;
+/// Distance from a room's borders at which a thing is dropped in it, m: it falls an arm's length before the agent.
+const DROP_M: f32 = 0.8;
+
+/// Eight directions in plan.
+const AROUND: [(f32, f32); 8] = {
+    let half = std::f32::consts::FRAC_1_SQRT_2;
+    [
+        (1.0, 0.0),
+        (half, half),
+        (0.0, 1.0),
+        (-half, half),
+        (-1.0, 0.0),
+        (-half, -half),
+        (0.0, -1.0),
+        (half, -half),
+    ]
+};
 
 /// The places of rooms, and of things that a hand reaches or that are found; those that were asked for.
 #[derive(Debug, Default)]
 pub(super) struct StepPlaces {
     rooms: BTreeMap<RoomId, Arc<NavigationGoal>>,
+    /// Where a thing that is dropped stays in a room.
+    drops: BTreeMap<RoomId, Arc<NavigationGoal>>,
     in_reach: BTreeMap<ObjectId, Arc<NavigationGoal>>,
     found: BTreeMap<ObjectId, Arc<NavigationGoal>>,
 }
@@ -82,10 +102,25 @@ impl PlaceFinder<'_> {
         let (house, ground) = (self.world.house(), &self.ground);
         let known = self.places.rooms.entry(room);
         let walkable = known.or_insert_with(|| {
-            goal(
-                ground.cells_in_rooms(house, &[room]),
-                InstructionGoal::rooms(vec![room]),
-            )
+            let cells = ground.cells_in_rooms(house, &[room]);
+            let asked = InstructionGoal::rooms(vec![room]);
+            let inner = cells.iter().filter(|cell| {
+                let at = ground.grid.position(**cell);
+                AROUND.into_iter().all(|(dx, dz)| {
+                    let beside =
+                        house.room_at(at + DROP_M * Vec3::new(dx, 0.0, dz) + 0.1 * Vec3::Y);
+                    beside.is_none_or(|beside| beside == room)
+                })
+            });
+            let inner: Vec<NavCell> = inner.copied().collect();
+            // A small room has no such place.
+            let drops = if inner.is_empty() {
+                cells.clone()
+            } else {
+                inner
+            };
+            self.places.drops.insert(room, goal(drops, asked.clone()));
+            goal(cells, asked)
         });
         !walkable.cells.is_empty()
     }
@@ -144,7 +179,7 @@ impl StepPlaces {
             StepCondition::LeftIn(object, room) => {
                 vec![
                     pick(object)?,
-                    leg(self.rooms.get(&room)?, LegEndAction::Drop),
+                    leg(self.drops.get(&room)?, LegEndAction::Drop),
                 ]
             }
             StepCondition::On(object, support) => {
