@@ -124,7 +124,7 @@ def test_what_is_no_action_is_refused(mode: str, action: object, part: str) -> N
         ({"actions": []}, "at least one action"),
         ({"actions": ["wait", "wait"]}, "wait twice"),
         ({"action_mode": "velocity", "actions": ["wait"]}, "velocities are all it has"),
-        ({"action_mode": "dict", "action_mask": True}, "masks are of the action_mode discrete"),
+        ({"action_mode": "velocity", "action_mask": True}, "velocity has no actions to mask"),
         ({"action_mask": 1}, "action_mask"),
     ],
 )
@@ -167,6 +167,40 @@ def test_masks_stand_in_infos_and_samples_keep_to_them() -> None:
     assert infos["action_mask"].shape == (2, 5)
     assert infos["action_mask"][0].tolist() == info["action_mask"].tolist()
     assert many.step([1, 2])[4]["_action_mask"].all()
+
+
+@pytest.mark.parametrize("mode", ["object", "pointer", "dict"])
+def test_masks_of_targets_rule_out_what_fails_on_everything(mode: str) -> None:
+    env = DwellEnv(
+        "Free", houses="builtin:studio", sensors=["instance"], action_mode=mode, action_mask=True
+    )
+    _, info = env.reset(seed=4)
+    field = "hand" if mode == "dict" else "action"
+    choices = env.action_space[field]  # type: ignore[index] # a Dict
+    hands = {"pick", "place", "drop", "open", "close", "toggle", "push", "put_in", "throw"}
+    names = ["", *(name for name in env.actions() if name in hands)]
+    names = names if mode == "dict" else env.actions()
+    ids = [1, 2, *(thing["id"] for thing in env.world.objects())]
+
+    def succeeds(number: int, target: object) -> bool:
+        before = env.snapshot()
+        parts = env.action_space.spaces.items()  # type: ignore[attr-defined] # a Dict
+        action = {key: np.zeros(part.shape, part.dtype) for key, part in parts}
+        action |= {field: number, "object" if mode == "object" else "pixel": target}
+        code = env.step(action)[4]["action_success"]
+        env.restore(before)
+        return bool(code)
+
+    assert info["action_mask"].dtype == np.int8
+    assert info["action_mask"].shape == (choices.n,)
+    pixels = [np.float32([x, y]) for x in (0.2, 0.5, 0.8) for y in (0.3, 0.5, 0.7, 0.9)]
+    seen = 0
+    for number, possible in enumerate(info["action_mask"].tolist()):
+        if possible or (mode != "dict" and names[number] not in hands):
+            continue
+        seen += 1
+        assert not any(succeeds(number, target) for target in (ids if mode == "object" else pixels))
+    assert 0 < seen < len(names)
 
 
 @pytest.mark.parametrize("mode", MODES)

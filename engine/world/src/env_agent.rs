@@ -1,6 +1,6 @@
 //! One of the agents that act in an environment.
 
-use crate::actions::{ActionTarget, AgentAction, HandTarget, StepAction, StepSizes};
+use crate::actions::{ActionMode, ActionTarget, AgentAction, HandTarget, StepAction, StepSizes};
 use crate::config::WorldConfig;
 use crate::env_config::{ResolvedAgentConfig, SensorConfig};
 use crate::episode::{Episode, StepInfo, StepResult};
@@ -22,6 +22,7 @@ pub(crate) struct EnvAgent {
     pub(crate) kind: &'static TaskKind,
     pub(crate) task: Box<dyn Task>,
     pub(crate) step_sizes: StepSizes,
+    pub(crate) action_mode: ActionMode,
     pub(crate) sensors: Vec<Box<dyn Sensor>>,
     pub(crate) episode: Option<Episode>,
     /// Whether it acts as its task's expert says.
@@ -102,6 +103,7 @@ impl EnvAgent {
             kind,
             task,
             step_sizes: role.stride,
+            action_mode: role.action_mode,
             sensors,
             episode: None,
             scripted: role.scripted,

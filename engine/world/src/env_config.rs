@@ -96,6 +96,7 @@ pub(crate) struct ResolvedAgentConfig<'a> {
     pub(crate) task: &'a str,
     pub(crate) task_settings: &'a Value,
     pub(crate) stride: StepSizes,
+    pub(crate) action_mode: ActionMode,
     /// The discrete actions that it has.
     pub(crate) actions: ActionSet,
     /// `None`: the task's own choice.
@@ -191,6 +192,7 @@ impl EnvConfig {
             task: own.task.as_deref().unwrap_or(&self.task),
             task_settings: own.task_settings.as_ref().unwrap_or(general),
             stride,
+            action_mode: own.action_mode.unwrap_or(self.action_mode),
             actions: ActionSet::of(&self.actions_of(own)?),
             sensors: own.sensors.as_deref().or(self.sensors.as_deref()),
             scripted: own.scripted,

@@ -137,8 +137,8 @@ impl Env {
         }
     }
 
-    /// Returns, for each discrete action of each agent, whether nothing known beforehand rules it out; what is not ruled out may
-    /// still fail. All are possible for an agent whose episode has ended. Shape (agent, [`DiscreteAction::ALL`]).
+    /// Returns, for each discrete action of each agent, whether nothing known beforehand rules it out: on what it looks at, or where
+    /// actions have targets on everything within its reach. What is not ruled out may still fail. All are possible for an agent whose episode has ended. Shape (agent, [`DiscreteAction::ALL`]).
     ///
     /// # Errors
     /// [`WorldError::InvalidCall`] before the first reset.
@@ -150,9 +150,12 @@ impl Env {
         let agents = self.agents.iter().zip(&mut masks);
         for (agent, mask) in agents.filter(|(agent, _)| !agent.done) {
             for (possible, action) in mask.iter_mut().zip(DiscreteAction::ALL) {
-                *possible = self
-                    .world
-                    .is_action_possible(agent.id, action, agent.step_sizes)?;
+                *possible = self.world.is_action_possible(
+                    agent.id,
+                    action,
+                    agent.step_sizes,
+                    agent.action_mode,
+                )?;
             }
         }
         Ok(masks)

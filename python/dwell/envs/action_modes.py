@@ -224,6 +224,9 @@ class DiscreteActions:
 
         Args:
             possible: Shape (environment, action of the engine).
+
+        Returns:
+            Shape (environment, action).
         """
         return possible[:, self._native].astype(np.int8)
 
@@ -269,6 +272,10 @@ class _Targeted(abc.ABC):
         self, verbs: EngineActions, target: object, shape: tuple[int]
     ) -> EngineActions:
         """The actions with what their hands are used on."""
+
+    def masks(self, possible: NDArray[np.bool_]) -> NDArray[np.int8]:
+        """As :meth:`DiscreteActions.masks`, of the field ``action``."""
+        return self._verbs.masks(possible)
 
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`."""
@@ -409,6 +416,10 @@ class DictActions:
             numbers_within("pixel", parts["pixel"], shape, 2, (0.0, 1.0)),
         )
 
+    def masks(self, possible: NDArray[np.bool_]) -> NDArray[np.int8]:
+        """As :meth:`DiscreteActions.masks`, of the field ``hand``."""
+        return possible[:, self._native].astype(np.int8)
+
     def expert(self, numbers: NDArray[np.int64]) -> Any:  # noqa: ANN401 - of the space
         """As :meth:`DiscreteActions.expert`."""
         known = self._native.tolist()
@@ -542,7 +553,11 @@ def action_form(
     return AnsweredActions(form, answer_fields) if answer_fields else form
 
 
-def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> DiscreteActions | None:
+#: Forms that have an action to choose, and so masks.
+MaskedActions = DiscreteActions | PointerActions | ObjectActions | DictActions
+
+
+def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> MaskedActions | None:
     """The form of actions whose masks are asked for, if they are.
 
     Raises:
@@ -550,11 +565,12 @@ def masked_form(action_mask: object, form: ActionForm | AnsweredActions) -> Disc
     """
     if not boolean("action_mask", action_mask):
         return None
-    own = form.form if isinstance(form, AnsweredActions) else form
-    own = own.form if isinstance(own, AskingActions) else own
-    if isinstance(own, DiscreteActions):
-        return own
-    raise ConfigError("action_mask is True; masks are of the action_mode discrete alone")
+    own = form
+    while isinstance(own, AnsweredActions | AskingActions):
+        own = own.form
+    if isinstance(own, VelocityActions):
+        raise ConfigError("action_mask is True; the action_mode velocity has no actions to mask")
+    return own
 
 
 def checked_mode(mode: object) -> str:

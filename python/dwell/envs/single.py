@@ -117,7 +117,8 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             actions: Names of the actions to choose from, in the order of their numbers; default the
                 twelve of ``discrete``, all in the other modes.
             action_mask: Whether ``info["action_mask"]`` says which actions are not ruled out, as
-                :meth:`gymnasium.spaces.Discrete.sample` takes it; in the mode ``discrete``.
+                :meth:`gymnasium.spaces.Discrete.sample` takes it; of the action or the hand where
+                an action has more fields; not in the mode ``velocity``.
             world: Further fields of the native WorldConfig; ``sound_head`` may be a
                 :class:`dwell.Head` or the path of its SOFA file.
             agent: Which of the world's agents acts, observes and is judged, by its place in

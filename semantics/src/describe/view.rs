@@ -9,6 +9,7 @@ use crate::check::{Addressee, Checker};
 use crate::form::{Clause, Description, Form, Modifier, Noun, Phrase, Quantifier, RoomSurfaceKind};
 use crate::predicates;
 use crate::refer::room_phrase;
+use crate::room_kind::room_kinds;
 use crate::scene::{SemanticScene, Term, Viewer};
 use crate::view::{ViewSurvey, refer_in_view};
 use dwell_scene::{ObjectId, RoomId, StructureKind};
@@ -365,11 +366,17 @@ impl ViewTeller<'_, '_> {
         let seen: Vec<RoomSurfaceKind> = seen.map(|(_, surface)| surface).collect();
         let mut surfaces = surfaces(scene, room);
         surfaces.retain(|surface| seen.contains(&surface.kind));
+        // In the sun dark boards look light.
+        let kind = room_kinds().get(&scene.semantics.room(room).noun);
+        let in_the_open = kind.is_some_and(|kind| !kind.indoor);
         for surface in &mut surfaces {
             let shows = |word: &mut String| {
                 !seen_colors::surface_shows(scene, self.survey, (room, surface.kind), word)
             };
             surface.color.take_if(shows);
+            if in_the_open {
+                surface.color = None;
+            }
         }
         surfaces.retain(|surface| surface.color.is_some() || surface.material.is_some());
         if !surfaces.is_empty() {

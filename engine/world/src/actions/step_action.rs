@@ -1,12 +1,13 @@
 //! What an agent does in one step of an environment: an action, velocities of its own, and what its hand is used on.
 
-use super::{AgentAction, DiscreteAction, StepSizes};
+use super::{AgentAction, DiscreteAction, HandTarget, StepSizes};
 use crate::episode::{Answer, MAX_ANSWER_FIELDS, MAX_QUESTION_TOKENS, QuestionTokens};
 use crate::error::WorldError;
 use crate::sound::Utterance;
 use crate::world::World;
 use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
-use dwell_scene::{AgentId, EntityId};
+use dwell_physics::{ActionOutcome, OutcomeCode};
+use dwell_scene::{AgentId, EntityId, ObjectId};
 use serde::{Deserialize, Serialize};
 
 /// The form that actions have.
@@ -27,6 +28,11 @@ pub enum ActionMode {
 }
 
 impl ActionMode {
+    /// Returns whether an action says what a hand is used on.
+    pub(crate) fn has_targets(self) -> bool {
+        matches!(self, Self::Pointer | Self::Object | Self::Dict)
+    }
+
     /// The actions to choose from by default, out of those of the task.
     pub(crate) fn default_actions(self, of_task: Vec<DiscreteAction>) -> Vec<DiscreteAction> {
         match self {
@@ -176,19 +182,52 @@ pub(crate) fn actions_named(names: &[String]) -> Result<Vec<DiscreteAction>, Wor
 }
 
 impl World {
-    /// Returns whether nothing known beforehand rules an action out that uses a hand on what the agent looks at; true for all other
-    /// actions. What is not ruled out may still fail.
+    /// Returns whether nothing known beforehand rules an action out that uses a hand: on what the agent looks at, or in a `mode` with
+    /// targets on everything within its reach; true for all other actions. What is not ruled out may still fail.
     pub(crate) fn is_action_possible(
         &mut self,
         agent: AgentId,
         action: DiscreteAction,
         step_sizes: StepSizes,
+        mode: ActionMode,
     ) -> Result<bool, WorldError> {
         let step = AgentAction::new(agent, action, step_sizes);
-        match self.hand_action(&step)? {
-            None => Ok(true),
-            Some(Err(_)) => Ok(false),
-            Some(Ok(hand)) => Ok(self.check_action(agent, &*hand).is_ok()),
+        let possible = match self.hand_action(&step)? {
+            None => true,
+            Some(Err(_)) => false,
+            Some(Ok(hand)) => self.check_action(agent, &*hand).is_ok(),
+        };
+        if possible || !mode.has_targets() || !action.kind().takes_target() {
+            return Ok(possible);
         }
+        for object in self.objects_within_reach(agent) {
+            let target = HandTarget::At(object.into());
+            let Some(Ok(hand)) = self.hand_action(&AgentAction { target, ..step })? else {
+                continue;
+            };
+            // What hides the nearest point of a thing need not hide all of it.
+            let hidden = |outcome: &ActionOutcome| outcome.code == OutcomeCode::NotVisible;
+            if self
+                .check_action(agent, &*hand)
+                .map_or_else(|outcome| hidden(&outcome), |()| true)
+            {
+                return Ok(true);
+            }
+        }
+        Ok(false)
+    }
+
+    /// The objects whose boxes a hand of an agent may reach.
+    fn objects_within_reach(&self, agent: AgentId) -> Vec<ObjectId> {
+        let Some(own) = self.state().agents.get(agent) else {
+            return Vec::new();
+        };
+        let (eye, reach_m) = (own.eye_position(), own.body.reach_m);
+        let (house, state) = (self.house(), self.state());
+        let in_reach = |object: &ObjectId| {
+            let bounds = house.object_bounds(state, *object);
+            eye.distance(eye.clamp(bounds.min, bounds.max)) <= reach_m
+        };
+        house.objects.ids().filter(in_reach).collect()
     }
 }
