@@ -201,7 +201,10 @@ class SoundApi(LanguageApi):
             said = text("words", words)
         else:
             rows = sequence_items("words", words, "expected text, or numbers of words")
-            said = [integer_in_range(f"words[{k}]", row) for k, row in enumerate(rows)]
+            last = len(_native.vocabulary())
+            said = [
+                integer_in_range(f"words[{k}]", row, low=1, high=last) for k, row in enumerate(rows)
+            ]
         effort = choice("effort", effort, _native.vocal_efforts())
         return _native.world_say(self._native, integer_in_range("agent", agent), said, effort)
 

@@ -116,8 +116,8 @@ def test_utterances_that_nobody_can_say_are_refused_with_the_agents_name() -> No
         env.step({"anna": 1, "ben": 1})
     with pytest.raises(dwell.ConfigError, match="xyzzy"):
         env.world.say(0, "xyzzy")
-    for number in (5000, 2**32, 10**12):
-        told = f"tokens is {number}; allowed is numbers of words, 1 to "
+    for number in (0, 5000, 2**32, 10**30):
+        told = rf"words\[0\] is {number}; allowed are whole numbers from 1 to "
         with pytest.raises(dwell.ConfigError, match=told):
             env.world.say(0, [number])
     with pytest.raises(dwell.ConfigError, match="no agent 9; there are 2"):

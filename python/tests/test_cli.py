@@ -424,6 +424,17 @@ def test_calibrate_refuses_a_house_where_none_was_measured_in(
     assert "house" in done.stderr
 
 
+def test_calibrate_refuses_a_folder_in_the_place_of_its_report_at_once(
+    tmp_path: Path, command: Command
+) -> None:
+    (tmp_path / "out" / "report.html").mkdir(parents=True)
+    # What was measured is not even looked for.
+    done = command("calibrate", tmp_path / "none.measured", "--out", tmp_path / "out")
+    assert done.returncode == 1
+    assert f"{tmp_path / 'out' / 'report.html'}" in done.stderr
+    assert "none.measured" not in done.stderr
+
+
 def test_a_response_obeys_laws(
     tmp_path: Path, two_points: tuple[str, str], command: Command
 ) -> None:

@@ -421,3 +421,13 @@ def test_other_suffixes_and_parts_of_plain_tables_are_refused(tmp_path: Path) ->
     with pytest.raises(ValueError, match="a CSV file holds one table; leave out 'part'"):
         open_table(tmp_path / "a.csv", "x")
     assert isinstance(open_table(tmp_path / "a.csv"), OpenTable)
+
+
+def test_a_row_without_end_is_refused_before_it_is_read(tmp_path: Path) -> None:
+    path = tmp_path / "a.csv"
+    path.write_text("t,x\n1,2\n" + "3" * 1_000_001)
+    with pytest.raises(ValueError, match="line 3 has more than"):
+        list(open_table(path).rows)
+    path.write_text("t" * 1_000_001)
+    with pytest.raises(ValueError, match="line 1 has more than 1,000,000 characters"):
+        open_table(path)

@@ -149,14 +149,9 @@ impl Env {
         let mut masks = vec![[true; DiscreteAction::ALL.len()]; self.agents.len()];
         let agents = self.agents.iter().zip(&mut masks);
         for (agent, mask) in agents.filter(|(agent, _)| !agent.done) {
-            for (possible, action) in mask.iter_mut().zip(DiscreteAction::ALL) {
-                *possible = self.world.is_action_possible(
-                    agent.id,
-                    action,
-                    agent.step_sizes,
-                    agent.action_mode,
-                )?;
-            }
+            *mask = self
+                .world
+                .possible_actions(agent.id, agent.step_sizes, agent.action_mode)?;
         }
         Ok(masks)
     }

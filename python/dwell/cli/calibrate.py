@@ -11,7 +11,7 @@ from collections.abc import Iterator
 from typing import Any
 
 from dwell.cli.common import ProgressBar, path, print_json
-from dwell.files import atomic_write
+from dwell.files import atomic_write, check_writable
 
 
 def configure(parser: argparse.ArgumentParser) -> None:
@@ -101,10 +101,16 @@ class _Progress:
         print("\nending with what was tried; Ctrl-C again: at once", file=sys.stderr)
 
 
+#: What ``--out`` gets.
+_FILES = ("report.html", "report.json", "found.json")
+
+
 def run(args: argparse.Namespace) -> int:
     """Calibrates, writes the report, and prints the verdict."""
     from dwell.calibration import calibrate
 
+    for name in _FILES if args.out else ():
+        check_writable(args.out / name)
     progress = _Progress()
     with progress.interruptible():
         report = calibrate(
@@ -116,12 +122,12 @@ def run(args: argparse.Namespace) -> int:
         )
     page = report.pop("html", "")
     if args.out:
-        files = {
-            "report.html": page,
-            "report.json": json.dumps(report, indent=1, ensure_ascii=False),
-            "found.json": json.dumps(report["found"], indent=1),
-        }
-        for name, text in files.items():
+        texts = (
+            page,
+            json.dumps(report, indent=1, ensure_ascii=False),
+            json.dumps(report["found"], indent=1),
+        )
+        for name, text in zip(_FILES, texts, strict=True):
             with atomic_write(args.out / name) as path:
                 path.write_text(text, "utf-8")
     if args.json:

@@ -6,7 +6,7 @@ use crate::error::WorldError;
 use crate::sound::Utterance;
 use crate::world::World;
 use dwell_acoustics::utterance::{MAX_TOKENS, VocalEffort};
-use dwell_physics::{ActionOutcome, OutcomeCode};
+use dwell_physics::OutcomeCode;
 use dwell_scene::{AgentId, EntityId, ObjectId};
 use serde::{Deserialize, Serialize};
 
@@ -182,36 +182,55 @@ pub(crate) fn actions_named(names: &[String]) -> Result<Vec<DiscreteAction>, Wor
 }
 
 impl World {
-    /// Returns whether nothing known beforehand rules an action out that uses a hand: on what the agent looks at, or in a `mode` with
-    /// targets on everything within its reach; true for all other actions. What is not ruled out may still fail.
-    pub(crate) fn is_action_possible(
+    /// Returns, for each discrete action, whether nothing known beforehand rules it out: on what the agent looks at, or in a `mode` with
+    /// targets on everything within its reach; true for all that use no hand. What is not ruled out may still fail.
+    pub(crate) fn possible_actions(
         &mut self,
         agent: AgentId,
-        action: DiscreteAction,
         step_sizes: StepSizes,
         mode: ActionMode,
-    ) -> Result<bool, WorldError> {
-        let step = AgentAction::new(agent, action, step_sizes);
-        let possible = match self.hand_action(&step)? {
-            None => true,
-            Some(Err(_)) => false,
-            Some(Ok(hand)) => self.check_action(agent, &*hand).is_ok(),
-        };
-        if possible || !mode.has_targets() || !action.kind().takes_target() {
-            return Ok(possible);
-        }
-        for object in self.objects_within_reach(agent) {
-            let target = HandTarget::At(object.into());
-            let Some(Ok(hand)) = self.hand_action(&AgentAction { target, ..step })? else {
-                continue;
+    ) -> Result<[bool; DiscreteAction::ALL.len()], WorldError> {
+        let mut mask = [true; DiscreteAction::ALL.len()];
+        let mut near = None;
+        for (possible, action) in mask.iter_mut().zip(DiscreteAction::ALL) {
+            let step = AgentAction::new(agent, action, step_sizes);
+            *possible = match self.hand_action(&step)? {
+                None => true,
+                Some(Err(_)) => false,
+                Some(Ok(hand)) => self.check_action(agent, &*hand).is_ok(),
             };
-            // What hides the nearest point of a thing need not hide all of it.
-            let hidden = |outcome: &ActionOutcome| outcome.code == OutcomeCode::NotVisible;
-            if self
-                .check_action(agent, &*hand)
-                .map_or_else(|outcome| hidden(&outcome), |()| true)
+            if !*possible && mode.has_targets() && action.kind().takes_target() {
+                let near = near.get_or_insert_with(|| self.objects_within_reach(agent));
+                *possible = self.is_possible_on_one_of(near, &step)?;
+            }
+        }
+        Ok(mask)
+    }
+
+    /// Returns whether nothing rules an action out on one of `near`, of which those that turn out to be out of reach are removed.
+    fn is_possible_on_one_of(
+        &mut self,
+        near: &mut Vec<ObjectId>,
+        step: &AgentAction,
+    ) -> Result<bool, WorldError> {
+        let mut k = 0;
+        while let Some(object) = near.get(k) {
+            let target = HandTarget::At((*object).into());
+            let hand = match self.hand_action(&AgentAction { target, ..*step })? {
+                Some(Ok(hand)) => hand,
+                _ => return Ok(false),
+            };
+            match self
+                .check_action(step.agent, &*hand)
+                .map_err(|own| own.code)
             {
-                return Ok(true);
+                // What hides the nearest point of a thing need not hide all of it.
+                Ok(()) | Err(OutcomeCode::NotVisible) => return Ok(true),
+                Err(OutcomeCode::TooFar | OutcomeCode::BehindAgent) => {
+                    near.swap_remove(k);
+                }
+                Err(OutcomeCode::HandFull | OutcomeCode::HandEmpty) => return Ok(false),
+                Err(_) => k += 1,
             }
         }
         Ok(false)

@@ -24,6 +24,27 @@ def _open(path: Path, _part: str | None) -> OpenTable:
     return OpenTable(columns, _rows(path, columns, delimiter), delimiter)
 
 
+#: Most characters of a line: rows of tables are far shorter, and a line is in memory as a whole.
+_MAX_LINE = 1_000_000
+
+
+def _lines(file: io.TextIOWrapper, path: Path) -> Iterator[str]:
+    """The lines of a table.
+
+    Raises:
+        ValueError: One is longer than any row.
+    """
+    number = 0
+    while line := file.readline(_MAX_LINE + 1):
+        number += 1
+        if len(line) > _MAX_LINE:
+            raise ValueError(
+                f"{path} line {number} has more than {_MAX_LINE:,} characters; end each row of the "
+                "table by a line feed"
+            )
+        yield line
+
+
 def _text(path: Path) -> io.TextIOWrapper:
     return io.TextIOWrapper(open_file(path, MAX_TABLE_BYTES), encoding="utf-8-sig", newline="")
 
@@ -32,7 +53,7 @@ def _head(path: Path) -> str:
     """The first line."""
     try:
         with _text(path) as file:
-            return file.readline()
+            return next(_lines(file, path), "")
     except UnicodeDecodeError as error:
         raise csv_values.encoding_error(path, error) from None
 
@@ -41,7 +62,7 @@ def _rows(path: Path, columns: list[str], delimiter: str) -> Iterator[tuple[int,
     """The rows below the head."""
     try:
         with _text(path) as file:
-            reader = csv.reader(file, delimiter=delimiter)
+            reader = csv.reader(_lines(file, path), delimiter=delimiter)
             rows = (row for row in reader if row)
             for number, row in enumerate(itertools.islice(rows, 1, None), start=1):
                 if len(row) != len(columns):
