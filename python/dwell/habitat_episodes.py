@@ -243,7 +243,7 @@ def _episode(
         file=name,
         index=index,
         task=task,
-        episode_id=str(_needed(row, "episode_id"))[:200],
+        episode_id=_id(_needed(row, "episode_id")),
         scene_id=scene_id,
         start_position=point("start_position", _needed(row, "start_position")),
         start_yaw_deg=_yaw_deg("start_rotation", _needed(row, "start_rotation")),
@@ -259,6 +259,13 @@ def _needed(row: Mapping[str, Any], field: str) -> object:
     if row.get(field) is None:
         raise ConfigError(f"{field}: missing; an episode has it")
     return row[field]
+
+
+def _id(told: object) -> str:
+    """An id: text, or a whole number as most files have it."""
+    if isinstance(told, bool) or not isinstance(told, str | int):
+        raise ConfigError(f"episode_id is {quoted(told)}; expected text or a whole number")
+    return str(told)[:200]
 
 
 def _goals(

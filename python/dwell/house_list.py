@@ -38,7 +38,7 @@ class HouseList(Sequence[str]):
         self._parts: list[str | Seeds] = []
         #: How many houses there are up to the end of each part.
         self._ends: list[int] = []
-        for house in sequence_items("houses", houses, "expected HOUSE strings"):
+        for house in sequence_items("houses", houses, "expected a list of HOUSE strings"):
             self.append(house)
 
     def append(self, house: str) -> None:

@@ -42,8 +42,12 @@ def read_head(path: str) -> HeadFile:
     Raises:
         MeasuredDataError: The message names file and variable.
     """
-    if not Path(path).exists():
-        raise MeasuredDataError(f"{path}: there is no such file")
+    try:
+        Path(path).stat()
+    except FileNotFoundError:
+        raise MeasuredDataError(f"{path}: there is no such file") from None
+    except OSError as error:
+        raise MeasuredDataError(f"{path}: {error.strerror}") from None
     return _HeadReader(path, _native.Hdf5.open(path)).head()
 
 

@@ -166,10 +166,17 @@ impl WorldAccess<'_> {
     ) -> Result<Vec<RelationTriple>, PyFault> {
         let codes = match names {
             None => default_relation_codes(viewer.is_some()),
-            Some(names) => names
-                .iter()
-                .map(|name| binary_predicate_index(name, viewer))
-                .collect::<Result<_, _>>()?,
+            Some(names) => {
+                let mut codes = Vec::with_capacity(names.len());
+                for name in &names {
+                    let code = binary_predicate_index(name, viewer)?;
+                    // Whoever asks twice is told once.
+                    if !codes.contains(&code) {
+                        codes.push(code);
+                    }
+                }
+                codes
+            }
         };
         Ok(relations(&self.scene(), &codes, viewer))
     }
@@ -180,8 +187,11 @@ fn binary_predicate_index(name: &str, viewer: Option<&Viewer>) -> Result<usize, 
     let predicate = predicate_called(name)?;
     if predicate.arity() != 2 {
         return Err(PyFault::Config(format!(
-            "{name:?} is said of {} things; relations are between two",
-            predicate.arity()
+            "{name:?} is said of {}; relations are between two things",
+            match predicate.arity() {
+                1 => "one thing".to_owned(),
+                count => format!("{count} things"),
+            }
         )));
     }
     if predicate.needs_viewer() && viewer.is_none() {

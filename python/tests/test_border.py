@@ -268,6 +268,7 @@ CALLS = [
         "/nowhere.urdf: No such file or directory (os error 2)",
     ),
     ("H.with_robot(arm, 5, (1, 0, 1))", "name is 5"),
+    (r'H.with_robot(arm, "a\x1bb", (1, 0, 1))', "a name, without control characters"),
     (
         'H.with_robot(arm, "r", None)',
         "position: expected three numbers (x, y, z) in metres, found None",

@@ -97,6 +97,8 @@ def without(name: str) -> Callable[[Row], None]:
     [
         (without("scene_id"), "episodes[1]: scene_id: missing"),
         (without("episode_id"), "episodes[1]: episode_id: missing"),
+        (put(episode_id=True), "episodes[1]: episode_id is True; expected text or a whole number"),
+        (put(episode_id=[1]), "episodes[1]: episode_id is [1]; expected text or a whole number"),
         (without("start_position"), "episodes[1]: start_position: missing"),
         (without("goals"), "episodes[1]: goals is None; expected a list of goals"),
         (put(goals=[]), "episodes[1]: goals is []; expected at least one goal"),

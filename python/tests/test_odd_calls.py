@@ -279,3 +279,47 @@ def test_what_is_no_sensors_fault_is_told_of_none() -> None:
     told = "^agent is 3; allowed is below the number of agents, 1$"
     with pytest.raises(dwell.ConfigError, match=told):
         DwellEnv("Free", houses="builtin:studio", sensors=["gps", "rgb"], agent=3)
+
+
+def test_of_several_houses_the_one_that_does_not_open_is_named(tmp_path: Path) -> None:
+    for who in ("anna", "ben"):
+        dwell.House.open("builtin:studio").write(tmp_path / who / "home.dwell", "dwell")
+    (tmp_path / "ben" / "home.dwell" / "house.json").write_text("{")
+    env = DwellEnv("Free", houses=str(tmp_path / "*" / "home.dwell"), sensors=["gps"])
+    env.reset(options={"house": 0})
+    with pytest.raises(dwell.HouseError) as refused:
+        env.reset(options={"house": 1})
+    assert str(refused.value).startswith(f"{tmp_path / 'ben' / 'home.dwell'}: ")
+
+
+def test_an_episode_at_its_limit_is_over_also_where_it_is_restored() -> None:
+    env = DwellEnv("Free", houses="builtin:studio", sensors=["gps"], max_episode_steps=2)
+    env.reset(seed=1)
+    assert [env.step(1)[3] for _ in range(2)] == [False, True]
+    for state in (None, env.snapshot()):
+        if state is not None:
+            env.restore(state)
+        with pytest.raises(dwell.UsageError, match="the episode has ended; call reset first"):
+            env.step(1)
+    env.reset(seed=1)
+    assert not env.step(1)[3]
+
+
+def test_a_predicate_asked_twice_is_told_once() -> None:
+    world = dwell.World("builtin:studio", agents=0)
+    assert world.relations(["on", "in", "on"]) == world.relations(["on", "in"])
+    with pytest.raises(dwell.ConfigError, match='"open" is said of one thing; relations are'):
+        world.relations(["open"])
+
+
+def test_a_task_of_no_steps_is_refused() -> None:
+    class Never(dwell.Task):
+        max_steps = -5
+
+    with pytest.raises(dwell.ConfigError, match=r"Never\.max_steps is -5; allowed are whole"):
+        DwellEnv(Never, houses="builtin:studio")
+
+
+def test_a_head_of_a_name_that_no_file_can_have_is_refused_as_its_file() -> None:
+    with pytest.raises(dwell.MeasuredDataError, match="File name too long"):
+        dwell.Head.from_sofa("x" * 5000)

@@ -115,6 +115,12 @@ pub enum WarningKind {
         /// The reason.
         reason: String,
     },
+    /// A primitive of a mesh that cannot be read; left out with all of its faces.
+    #[error("a primitive is left out with all of its faces: {reason}")]
+    BadPrimitive {
+        /// The reason.
+        reason: String,
+    },
     /// A statement of the file that is not understood; ignored.
     #[error("{found:?} is not understood; ignored")]
     BadStatement {

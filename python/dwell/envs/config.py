@@ -16,7 +16,7 @@ from typing import Any, TypedDict
 
 import numpy as np
 
-from dwell import ConfigError, _native
+from dwell import ConfigError, HouseError, _native
 from dwell.arguments import (
     checked_fields,
     integer_in_range,
@@ -178,17 +178,30 @@ class HouseCache:
         return self.open(index)
 
     def open(self, index: int, *, threads: int | None = None) -> House:
-        """House ``index`` modulo their number, opened by so many threads."""
+        """House ``index`` modulo their number, opened by so many threads.
+
+        Raises:
+            HouseError: It cannot be opened; of several the message begins with its name.
+        """
         name = self.names[index % len(self.names)]
         house = self._given.get(name) or self.alive.get(name)
         if house is None:
-            house = self.alive[name] = House.open_by(name, threads)
+            house = self.alive[name] = self._opened(name, threads)
         # Without a lock, which a fork beside another thread would leave held.
         self._kept.pop(name, None)
         self._kept[name] = house
         while len(self._kept) > CACHED_HOUSES:
             self._kept.popitem(last=False)
         return house
+
+    def _opened(self, name: str, threads: int | None) -> House:
+        """The house of a name; of several the error says which it is."""
+        try:
+            return House.open_by(name, threads)
+        except HouseError as error:
+            if len(self.names) == 1 or name in str(error):
+                raise
+            raise type(error)(f"{name}: {error}") from error
 
     def draw(self, stream: np.random.Generator) -> tuple[int, int]:
         """House and seed of the next episode."""

@@ -20,6 +20,7 @@ from dwell.arguments import (
     boolean,
     finite_number,
     from_json,
+    integer_in_range,
     mapping,
     quoted,
     refuse_no_array,
@@ -98,6 +99,7 @@ def split(
         one = make_task()
         task, settings = text("task.base", one.base), one.base_settings
         task_of(task, f"{type(one).__name__}.base")
+        integer_in_range(f"{type(one).__name__}.max_steps", one.max_steps, low=1)
         # Also those that are not used: whoever writes a task shall see that they are none.
         own_sensors = _sensors(f"{type(one).__name__}.sensors", one.sensors)
     else:

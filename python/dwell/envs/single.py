@@ -313,7 +313,7 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
         ``info`` has no ``distance_to_goal``, ``spl`` and ``soft_spl`` where the task has no goal.
         """
         self._refuse_stopped("step")
-        if self._ended:
+        if self._ended or self._is_at_limit():
             raise UsageError("step: the episode has ended; call reset first")
         taken = self._actions.one(action)
         # A step that the task did not judge to its end is none.
@@ -328,13 +328,17 @@ class DwellEnv(EpisodeCalls, CurrentStateApi, gymnasium.Env[dict[str, Any], Any]
             observation,
             float(answer["reward"][0]),
             terminated,
-            self._limit is not None and self._steps() >= self._limit,
+            self._is_at_limit(),
             {
                 **info,
                 **self._info(),
                 **(further[0] if further else {}),
             },
         )
+
+    def _is_at_limit(self) -> bool:
+        """Whether the episode has as many steps as are allowed."""
+        return self._limit is not None and self._steps() >= self._limit
 
     def _steps(self) -> int:
         """Number of steps of the episode so far."""

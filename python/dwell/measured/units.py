@@ -108,7 +108,10 @@ class ColumnUnits:
             return _by_numbers(told, dimension, at)
         if told not in UNITS[dimension]:
             others = [name for name, units in UNITS.items() if told in units]
-            other = f" is of a {others[0]}, and the column holds a {dimension}" if others else ""
+            other = ""
+            if others:
+                other = f" is of {_with_article(others[0])}, and the column holds "
+                other += _with_article(dimension)
             raise ValueError(
                 f"{at} is in {told!r}{'' if not other else ', which' + other}; allowed is one of "
                 f"{list(UNITS[dimension])}, or an object with one of {list(_TOLD)}"
@@ -144,6 +147,10 @@ class ColumnUnits:
                     f"{' and of '.join(map(repr, columns))}; leave {key} out, and write in 'units' "
                     "what their numbers are in"
                 )
+
+
+def _with_article(noun: str) -> str:
+    return f"{'an' if noun[0] in 'aeiou' else 'a'} {noun}"
 
 
 def _by_numbers(told: dict[str, Any], dimension: str, at: str) -> Unit:

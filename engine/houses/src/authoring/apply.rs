@@ -351,7 +351,7 @@ impl<'a> EditSession<'a> {
 }
 
 /// Refuses a name of blanks alone, and one with control characters.
-fn check_is_name(field: &str, name: &str) -> Result<(), HousesError> {
+pub(crate) fn check_is_name(field: &str, name: &str) -> Result<(), HousesError> {
     if name.trim().is_empty() || name.contains(char::is_control) {
         let possible = "a name, without control characters";
         return Err(invalid_field(field, format_args!("{name:?}"), possible));

@@ -181,7 +181,7 @@ fn merge(
         let mut part = match part {
             Ok(part) => part,
             Err(reason) => {
-                report.warn(at.clone(), WarningKind::BadFace { reason });
+                report.warn(at.clone(), WarningKind::BadPrimitive { reason });
                 continue;
             }
         };

@@ -25,6 +25,7 @@ pub(crate) use model::{
 
 use dwell_scene::{House, Pose};
 
+use crate::authoring::check_is_name;
 use crate::error::HousesError;
 use crate::report::FileLocation;
 
@@ -37,7 +38,7 @@ use crate::report::FileLocation;
 /// shape that is seen of the named link, or of the next that has one.
 ///
 /// # Errors
-/// [`HousesError::Scene`] for a name that is taken, a pose that is not rigid, or a robot out of the scene's ranges.
+/// [`HousesError::Spec`] for a name of blanks alone, or with control characters; [`HousesError::Scene`] for one that is taken, a pose that is not rigid, or a robot out of the scene's ranges.
 pub fn with_robot(
     house: &House,
     robot: &Robot,
@@ -45,6 +46,7 @@ pub fn with_robot(
     world_from_base: Pose,
     fixed_base: bool,
 ) -> Result<House, HousesError> {
+    check_is_name("name", name)?;
     let mut data = house.data().clone();
     let world_from_root = world_from_base * assemble::dwell_from_robot();
     assemble::add(

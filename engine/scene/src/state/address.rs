@@ -43,8 +43,14 @@ impl Address {
             return Ok(());
         }
         let [low, high] = [low, high].map(plain);
+        // "1" is the unit of what has none.
+        let unit = if unit == "1" {
+            String::new()
+        } else {
+            format!(" {unit}")
+        };
         Err(self.invalid(format!(
-            "{value} is out of range; allowed are {low} to {high} {unit}"
+            "{value} is out of range; allowed are {low} to {high}{unit}"
         )))
     }
 

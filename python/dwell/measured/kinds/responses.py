@@ -383,6 +383,8 @@ def _wav_path(told: str, known: dict[str, Path], place: Place) -> Path:
     path = place.path.parent / told
     if not path.resolve().is_relative_to(folder):
         raise ValueError(f"{place}: {told!r} leads out of the table's folder")
+    if path.exists() and not path.is_file():
+        raise ValueError(f"{place}: {path} is no regular file; a WAV file is expected there")
     if not path.is_file():
         raise ValueError(
             f"{place}: there is no {path}; give the WAV files too, or put them beside the table"

@@ -11,6 +11,7 @@ use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::instruct::{ConditionContext, StepCondition};
+use glam::Vec3;
 use std::sync::Arc;
 
 /// Control steps for which the expert waits for what its hand has begun.
@@ -55,6 +56,8 @@ pub(super) struct ActiveInstruction {
     busy: u32,
     /// How often it has tried all places of the leg in vain.
     rounds: u32,
+    /// Where the hand acted on legs of the step that is done now: of one that has to be gone again it did so in vain.
+    tried: Vec<(LegPlace, Vec3)>,
 }
 
 impl ActiveInstruction {
@@ -74,6 +77,7 @@ impl ActiveInstruction {
             at: LegPlace::default(),
             busy: 0,
             rounds: 0,
+            tried: Vec::new(),
         }
     }
 
@@ -164,6 +168,14 @@ impl ActiveInstruction {
                 _ => planned.goal.clone(),
             };
             self.leg = self.leg.with_goal(goal);
+            if at.step != self.at.step {
+                self.tried.clear();
+            }
+            let tried = self.tried.iter().filter(|(leg, _)| *leg == at);
+            let tried: Vec<Vec3> = tried.map(|(_, place)| *place).collect();
+            if !tried.is_empty() {
+                self.leg.avoid_goals_near(&tried, ELSEWHERE_M);
+            }
             (self.at, self.busy, self.rounds) = (at, 0, 0);
         }
         self.progress.done - before
@@ -281,10 +293,10 @@ impl ActiveInstruction {
                 let step = self.leg.approach(world);
                 step.unwrap_or_else(|| self.elsewhere(world, ELSEWHERE_M))
             }
-            LegEndAction::Drop => self.leg.walk(world).unwrap_or_else(|| {
-                self.busy = 1;
-                DiscreteAction::Drop
-            }),
+            LegEndAction::Drop => match self.leg.walk(world) {
+                Some(step) => step,
+                None => self.act(world, DiscreteAction::Drop),
+            },
             LegEndAction::Hand(action, object) => {
                 if let Some(step) = self.leg.walk(world) {
                     return step;
@@ -312,11 +324,17 @@ impl ActiveInstruction {
         match look {
             LookAction::Turn(step) => step,
             LookAction::Missed => self.elsewhere(world, BESIDE_M),
-            LookAction::Done => {
-                self.busy = 1;
-                action
-            }
+            LookAction::Done => self.act(world, action),
         }
+    }
+
+    /// Uses the hand here.
+    fn act(&mut self, world: &World, action: DiscreteAction) -> DiscreteAction {
+        self.busy = 1;
+        if let Some(agent) = world.state().agents.get(self.leg.guide.agent()) {
+            self.tried.push((self.at, agent.position));
+        }
+        action
     }
 
     /// Goes on from another place; gives up where there is none.

@@ -7,7 +7,7 @@ use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{NavigationGoal, SuccessRule, cells_in_reach, goal_region};
 use crate::world::World;
 use dwell_scene::navigation::NavCell;
-use dwell_scene::{AgentBody, AgentId, ObjectId, RoomId};
+use dwell_scene::{Aabb, AgentBody, AgentId, ObjectId, RoomId};
 use dwell_semantics::instruct::{InstructionGoal, StepCondition};
 use glam::Vec3;
 use std::collections::BTreeMap;
@@ -17,6 +17,9 @@ use std::sync::Arc;
 const LEAST_CELLS: usize = 6;
 /// Distance from a room's borders at which a thing is dropped in it, m: it falls an arm's length before the agent.
 const DROP_M: f32 = 0.8;
+/// Least rise of a step of stairs, and height from which ground is that of another storey, m.
+const STEP_M: f32 = 0.1;
+const STOREY_M: f32 = 2.0;
 
 /// Eight directions in plan.
 const AROUND: [(f32, f32); 8] = {
@@ -50,6 +53,16 @@ fn goal(cells: Vec<NavCell>, asked: InstructionGoal) -> Arc<NavigationGoal> {
         told: EpisodeGoal::default(),
         instruction: None,
     })
+}
+
+/// Places of stairs on which `cells`, or the ground around them, lie: what falls there rolls on.
+fn steps_near(ground: &LargestIslandIndex<'_>, cells: &[NavCell], floor_y: f32) -> Vec<Vec3> {
+    let position = |cell: &NavCell| ground.grid.position(*cell);
+    let around = Aabb::from_points(cells.iter().map(position)).grown(DROP_M);
+    let near = ground.cells_around(&around).into_iter();
+    let near = near.map(|cell| ground.grid.position(cell));
+    near.filter(|at| (STEP_M..STOREY_M).contains(&(at.y - floor_y).abs()))
+        .collect()
 }
 
 /// Where a hand reaches a thing as it lies now, for an agent that looks at it.
@@ -104,13 +117,16 @@ impl PlaceFinder<'_> {
         let walkable = known.or_insert_with(|| {
             let cells = ground.cells_in_rooms(house, &[room]);
             let asked = InstructionGoal::rooms(vec![room]);
+            let steps = steps_near(ground, &cells, house.rooms[room].floor_y);
             let inner = cells.iter().filter(|cell| {
                 let at = ground.grid.position(**cell);
-                AROUND.into_iter().all(|(dx, dz)| {
-                    let beside =
-                        house.room_at(at + DROP_M * Vec3::new(dx, 0.0, dz) + 0.1 * Vec3::Y);
-                    beside.is_none_or(|beside| beside == room)
-                })
+                let is_level = steps.iter().all(|step| step.distance(at) > DROP_M);
+                is_level
+                    && AROUND.into_iter().all(|(dx, dz)| {
+                        let beside =
+                            house.room_at(at + DROP_M * Vec3::new(dx, 0.0, dz) + 0.1 * Vec3::Y);
+                        beside.is_none_or(|beside| beside == room)
+                    })
             });
             let inner: Vec<NavCell> = inner.copied().collect();
             // A small room has no such place.

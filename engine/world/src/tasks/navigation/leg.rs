@@ -60,17 +60,31 @@ impl Leg {
     /// Leads to goals further than `radius_m` from here from now on; `false` when there are none. Of a cell on whose border the agent
     /// stands the thing may be hidden, though it is seen from the middle.
     pub(in crate::tasks) fn exclude_goals_within(&mut self, world: &World, radius_m: f32) -> bool {
-        let id = self.expert_path.agent();
-        let Some(agent) = world.state().agents.get(id) else {
-            return false;
-        };
+        let agent = world.state().agents.get(self.expert_path.agent());
+        agent.is_some_and(|agent| {
+            let position = agent.position;
+            self.retain_goals(|cell| cell.distance(position) > radius_m)
+        })
+    }
+
+    /// Leads to goals further than `radius_m` from all of `tried` from now on, where there are any.
+    pub(in crate::tasks) fn avoid_goals_near(&mut self, tried: &[Vec3], radius_m: f32) {
+        let is_far = |cell: Vec3| tried.iter().all(|place| place.distance(cell) > radius_m);
+        if !self.retain_goals(is_far) {
+            self.restore_all_goals();
+        }
+    }
+
+    /// Leads to those goals whose positions are `wanted` from now on; `false` when there are none, or when that are all.
+    fn retain_goals(&mut self, wanted: impl Fn(Vec3) -> bool) -> bool {
         let grid = self.expert_path.grid().clone();
         let before = self.expert_cells.len();
         self.expert_cells
-            .retain(|cell| (grid.position(*cell) - agent.position).length() > radius_m);
+            .retain(|cell| wanted(grid.position(*cell)));
         if self.expert_cells.is_empty() || self.expert_cells.len() == before {
             return false;
         }
+        let id = self.expert_path.agent();
         self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, self.stride);
         true
     }
