@@ -18,7 +18,8 @@ for sources in "$registries"/*; do
     flags="$flags$(printf '\037')--remap-path-prefix=$sources=crates"
 done
 build() {
-    CARGO_ENCODED_RUSTFLAGS="$flags" "$bin/maturin" build --release --manifest-path python/Cargo.toml --out dist "$@"
+    CARGO_ENCODED_RUSTFLAGS="$flags" "$bin/maturin" build --release --manifest-path python/Cargo.toml --compression-level 9 \
+        --out dist "$@"
 }
 
 # For Linux. Threads that Python ends are unwound by the system's libgcc_s (docs/python-border.md), so the extension must unwind by it,
