@@ -63,7 +63,9 @@ def test_names_that_nothing_has_are_refused(world: dwell.World) -> None:
         world.holds("in_room", "radio_1", "room:dungeon")
     with pytest.raises(dwell.ConfigError, match="no storey"):
         world.holds("on_storey", "radio_1", "storey:9")
-    with pytest.raises(dwell.ConfigError, match="said of one thing; relations are between two things"):
+    with pytest.raises(
+        dwell.ConfigError, match="said of one thing; relations are between two things"
+    ):
         world.relations(["open"])
     with pytest.raises(dwell.ConfigError, match="needs a viewer"):
         world.relations(["left_of"])

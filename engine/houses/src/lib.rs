@@ -18,6 +18,7 @@ pub mod measured;
 pub mod mjcf;
 pub mod native;
 pub mod obj;
+mod object_name;
 mod open;
 mod open_robot;
 mod opened;

@@ -17,6 +17,7 @@ use super::overlap_check::{intersects_wall, overlapping_pairs};
 use super::{add, agent_start, describe, doors, fixtures, place, remove_objects, surfaces};
 use crate::error::HousesError;
 use crate::import::room_kind;
+use crate::object_name::check_is_name;
 use crate::report::{FileLocation, LoadReport};
 use crate::warning_kind::WarningKind;
 
@@ -348,13 +349,4 @@ impl<'a> EditSession<'a> {
         }
         bounds.transformed(&part.part_from_mesh).center()
     }
-}
-
-/// Refuses a name of blanks alone, and one with control characters.
-pub(crate) fn check_is_name(field: &str, name: &str) -> Result<(), HousesError> {
-    if name.trim().is_empty() || name.contains(char::is_control) {
-        let possible = "a name, without control characters";
-        return Err(invalid_field(field, format_args!("{name:?}"), possible));
-    }
-    Ok(())
 }

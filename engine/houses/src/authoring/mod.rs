@@ -30,7 +30,6 @@ mod surfaces;
 mod unmapped;
 
 pub use add::kinds;
-pub(crate) use apply::check_is_name;
 pub use apply::edit;
 pub use edits::{
     AddEmitter, AddLamp, AddObject, AddRobot, Anchor, ChangeMaterial, Edit, MoveObject,

@@ -25,8 +25,8 @@ pub(crate) use model::{
 
 use dwell_scene::{House, Pose};
 
-use crate::authoring::check_is_name;
 use crate::error::HousesError;
+use crate::object_name::check_is_name;
 use crate::report::FileLocation;
 
 /// A house with a robot in it. `name` must be free; `fixed_base` fixes its base, else the base is a body that

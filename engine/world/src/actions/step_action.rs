@@ -216,9 +216,8 @@ impl World {
         let mut k = 0;
         while let Some(object) = near.get(k) {
             let target = HandTarget::At((*object).into());
-            let hand = match self.hand_action(&AgentAction { target, ..*step })? {
-                Some(Ok(hand)) => hand,
-                _ => return Ok(false),
+            let Some(Ok(hand)) = self.hand_action(&AgentAction { target, ..*step })? else {
+                return Ok(false);
             };
             match self
                 .check_action(step.agent, &*hand)
