@@ -30,7 +30,7 @@ pub struct AgentBody {
     /// The largest edge of an object that it carries, m; 0.05 to 5.
     pub max_carry_size_m: f32,
     /// The horizontal field of view of the cameras at its eyes that state none of their own, degrees; 1 to 170, default 90.
-    /// In a world it is the value of `agent/N/camera/fov_deg` until that is set.
+    /// In a world it is the value of `agent/N/camera/fov_deg` until that is set: then it is that of all its cameras but those with a `projection`, whatever they state.
     pub camera_fov_deg: f32,
     /// Its locomotion; default: it walks.
     pub locomotion: Locomotion,
