@@ -88,8 +88,8 @@ class BodySettings(TypedDict, total=False):
     max_carry_size_m: float
     #: The horizontal field of view of the cameras at its eyes that state none of their own,
     #: degrees; 1 to 170, default 90. In a world it is the value of `agent/N/camera/fov_deg` until
-    #: that is set: then it is that of all its cameras but those with a `projection`, whatever
-    #: they state.
+    #: that is set: then it is that of all its cameras but those with a `projection`, whatever they
+    #: state.
     camera_fov_deg: float
     #: Its locomotion; default: it walks.
     locomotion: Locomotion
