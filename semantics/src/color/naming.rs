@@ -160,7 +160,7 @@ const DIVIDED: f32 = 0.4;
 /// 0.25 and 0.32 that were told as blue).
 const DIVIDED_TEAL: f32 = 0.2;
 
-/// Reads the tables of names, which the first word of a colour does else.
+/// Reads the survey and the names of things ahead of the first colour that is named, which would wait for them.
 pub(crate) fn read_tables() {
     ColorNamingModel::shared();
 }

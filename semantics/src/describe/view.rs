@@ -455,8 +455,9 @@ impl ViewTeller<'_, '_> {
 
 /// The description of what a listener sees, as a person would tell it: the room with its floor and walls as far as they are in the
 /// picture, the things by side with the largest first, six kinds at most, how far the largest are and where they are to each other, what lies on them,
-/// and what is seen in other rooms. What covers less than 100 pixels of 256 by 256, or is hidden to more than three quarters, is left
-/// out. Without a viewer nothing is seen.
+/// and what is seen in other rooms. What covers less than 100 pixels of 256 by 256 (in other rooms 262), or is hidden to more than three
+/// quarters (in other rooms two fifths), is left out; so are small things of clear glass, glazed partitions, the colour of floors in the
+/// open, and how far what runs out of the picture below is. Without a viewer nothing is seen.
 pub fn describe_view(
     scene: &SemanticScene<'_>,
     listener: Addressee,

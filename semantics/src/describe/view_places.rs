@@ -20,7 +20,7 @@ const MAX_EXCESS_M: f32 = 0.1;
 const RELATIONS: [&str; 5] = ["above", "under", "next_to", "left_of", "right_of"];
 
 impl ViewTeller<'_, '_> {
-    /// Says how far a thing is, in whole metres, where it is no nearer than that.
+    /// Says how far a thing is, in whole metres, where it is no nearer than that; returns whether it did.
     fn say_distance(&mut self, subject: &Description, sighting: Sighting) -> bool {
         let clause = |metres| Clause::Distance {
             subject: subject.clone().into(),

@@ -1,6 +1,7 @@
 //! Texts of views in houses whose doors are out of the way.
 #![allow(clippy::unwrap_used, reason = "tests stop at the first surprise")]
 
+use crate::common::{Builder, Corners};
 use dwell_scene::{House, ObjectId, Pose, RoomId, State};
 use dwell_semantics::check::Addressee;
 use dwell_semantics::describe::{TextOptions, describe_view};
@@ -100,4 +101,64 @@ fn windows_of_other_rooms_are_told_as_such() {
     }
     println!("{own} windows and curtains of the viewer's room told, {others} of others in sight");
     assert!(own >= 50 && others >= 20, "{own}, {others}");
+}
+
+/// What somebody in the middle of the near wall of a room of 6 by 6 m sees, looking along -z.
+fn view_of(kind: &str, things: &[(&str, &str, Corners)]) -> String {
+    let mut b = Builder::new("view");
+    b.room(kind, [0.05, 0.05], [5.95, 5.95]);
+    for (category, substance, corners) in things {
+        let material = b.material(substance, [150, 111, 72]);
+        b.thing(category, &[*corners], material);
+    }
+    let house = b.build();
+    let semantics = Semantics::new(&house);
+    let state = State::new(&house);
+    let scene = semantics.scene(&state);
+    let listener = Addressee {
+        viewer: Some(Viewer {
+            world_from_camera: Pose::from_position_yaw(Vec3::new(3.0, 1.5, 5.5), 0.0),
+        }),
+        agent: None,
+    };
+    describe_view(&scene, listener, TextOptions::default()).text
+}
+
+/// Nobody sees how near the near end of a thing is that the lower border cuts.
+#[test]
+fn what_runs_out_of_the_picture_below_has_no_distance() {
+    let bench = |from: f32| -> Corners { ([2.2, 0.0, from - 1.2], [3.8, 0.45, from]) };
+    let far = view_of("living_room", &[("bench", "wood", bench(3.0))]);
+    let near = view_of("living_room", &[("bench", "wood", bench(4.9))]);
+    // 2.5 m ahead and 1.05 m below the eye: 2.7 m.
+    assert!(far.contains("The bench is about 3 metres away."), "{far}");
+    assert!(near.contains("bench") && !near.contains("away"), "{near}");
+}
+
+/// People say door of a partition with glass in it.
+#[test]
+fn a_glazed_partition_is_not_told() {
+    let panel: Corners = ([1.5, 0.0, 2.0], [4.5, 2.2, 2.1]);
+    let solid = view_of("living_room", &[("partition", "gypsum_board", panel)]);
+    let glazed = view_of("living_room", &[("partition", "glass", panel)]);
+    assert!(solid.contains("partition"), "{solid}");
+    assert!(!glazed.contains("partition"), "{glazed}");
+}
+
+/// Dark boards look light in the sun.
+#[test]
+fn floors_in_the_open_have_no_colour() {
+    let table: Corners = ([2.2, 0.0, 2.0], [3.8, 0.7, 3.0]);
+    let things = [("table", "wood", table)];
+    let indoors = view_of("living_room", &things);
+    let outdoors = view_of("terrace", &things);
+    assert!(indoors.contains("brown parquet floor"), "{indoors}");
+    let floor = outdoors
+        .split(". ")
+        .find(|sentence| sentence.contains("floor"));
+    assert!(
+        floor.is_none_or(|floor| !floor.contains("brown")),
+        "{outdoors}"
+    );
+    assert!(outdoors.contains("parquet floor"), "{outdoors}");
 }
