@@ -29,11 +29,12 @@ from dwell.evaluation import evaluate
 
 BODY = {"gps": {}, "compass": {}, "proprioception": {}, "lidar": {"beams": 36}}
 SOUND = {"audio": {}}
-#: What the learner observes beside its body. Of a picture it gets the mean colours of 16 fields.
+#: What the learner observes beside its body. Of a picture it gets the mean colours of 16 fields, of
+#: a picture of classes how much of each of 24 fields shows the goal's.
 GOAL_SENSORS = {
     "PointNav": {"pointgoal_with_gps_compass": {}},
     "RoomNav": {"roomgoal": {}},
-    "ObjectNav": {"objectgoal": {}},
+    "ObjectNav": {"objectgoal": {}, "semantic": {"width": 32, "height": 24}},
     "ImageNav": {"imagegoal": {"width": 32, "height": 32}},
     "AudioNav": SOUND,
     "SemanticAudioNav": SOUND,
@@ -44,8 +45,26 @@ GOAL_SENSORS = {
     "Rearrange": {"rearrangegoal": {}},
     "Tidy": {},
 }
-#: Tasks whose doors are asked to stand open, so that the lidar shows all ways.
-WITHOUT_DOORS = ("SoundLocalization", "InstructionFollowing-v1", "Rearrange", "Tidy")
+#: Settings of tasks whose episodes are made short; all others have their doors open, so that the
+#: lidar shows all ways.
+TASK_SETTINGS = {
+    "SoundLocalization": {},
+    "InstructionFollowing-v1": {"forms": ["single"]},
+    "Rearrange": {"max_things": 1, "max_openables": 1},
+    "Tidy": {"max_things": 1},
+}
+#: Metrics that the curve has where the task has them.
+METRICS = (
+    "success",
+    "spl",
+    "answer_correct",
+    "angular_error_deg",
+    "class_correct",
+    "goal_condition_success",
+    "prop_fixed",
+    "energy_prop",
+    "tidied",
+)
 #: Steps before this one whose observations are told, too.
 HISTORY = (2, 6, 14)
 HIDDEN, WORD_SIZE, BATCH, RATE = 128, 24, 256, 1e-3
@@ -100,6 +119,10 @@ def what_is_sensed(observation):
             now.append([np.cos(value[0]), np.sin(value[0])])
         elif name == "audio":
             now.append(heard(value))
+        elif name == "semantic":
+            is_goal = value[..., 0] == observation["objectgoal"][0]
+            fields = is_goal.reshape(3, value.shape[0] // 3, 8, value.shape[1] // 8)
+            now.append(np.sqrt(fields.mean(axis=(1, 3))).ravel())
         elif name == "lidar":
             now.append(np.minimum(value.ravel(), 4.0) / 2.0)
         elif name in ("gps", "proprioception", "rearrangegoal"):
@@ -281,7 +304,9 @@ def curve(args):
     """Success on houses of ``val`` after so many demonstrations; gives a row for each count."""
     counts = [int(count) for count in args.demonstrations.split(",")]
     sensors = {**GOAL_SENSORS[args.task], **BODY}
-    settings = {} if args.task in WITHOUT_DOORS else {"open_doors": True}
+    settings = dict(TASK_SETTINGS.get(args.task, {"open_doors": True}))
+    if args.max_distance_m is not None:
+        settings["max_distance_m"] = args.max_distance_m
     env = DwellEnv(
         args.task,
         houses=f"split:train:0..{args.houses}",
@@ -310,7 +335,7 @@ def curve(args):
             max_steps=args.max_steps,
             threads=1,
         )
-        metrics = {name: result["metrics"].get(name) for name in ("success", "spl")}
+        metrics = {name: result["metrics"][name] for name in METRICS if name in result["metrics"]}
         yield {"demonstrations": number, "steps": len(labels), "episodes": args.episodes, **metrics}
 
 
@@ -322,6 +347,7 @@ def main():
     parser.add_argument("--episodes", type=int, default=50, help="of val, for each count")
     parser.add_argument("--houses", type=int, default=50, help="of train, and of val at most")
     parser.add_argument("--max-steps", type=int, default=300, help="of every episode")
+    parser.add_argument("--max-distance-m", type=float, help="the furthest start from the goal, m")
     parser.add_argument("--updates", type=int, default=6000, help="batches of each training")
     parser.add_argument("--dagger", action="store_true", help="the learner acts, the expert labels")
     parser.add_argument("--seed", type=int, default=1)

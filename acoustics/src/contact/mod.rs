@@ -13,6 +13,7 @@ mod footstep;
 mod friction_noise;
 mod impact;
 mod impact_force;
+mod mode_bank;
 pub mod modes;
 mod radiation;
 

@@ -1,5 +1,6 @@
 //! From a force to pressure: modes that ring and radiate, walls under a force, and compact bodies that are accelerated.
 
+use super::mode_bank::{self, SampledMode};
 use super::modes::BendingPanel;
 use super::{ContactPartner, PartnerKind, elastic};
 use dwell_scene::random::RandomKey;
@@ -147,26 +148,22 @@ impl Radiator {
             *y += self.push * now + self.jerk * (now - before) * rate;
             before = *now;
         }
-        for mode in self
+        let audible = self
             .modes
             .iter()
-            .filter(|mode| mode.omega < 0.45 * TAU * rate)
-        {
+            .filter(|mode| mode.omega < 0.45 * TAU * rate);
+        let sampled = audible.map(|mode| {
             let size = libm::exp(-mode.decay_per_s * step_s);
-            let (re, im) = (
-                size * libm::cos(mode.omega * step_s),
-                size * libm::sin(mode.omega * step_s),
-            );
-            // After the force the mode is rendered down by 80 dB.
-            let rest = (4.0 * LN_10 / mode.decay_per_s * rate) as usize;
-            let end = out.len().min(force.len() + rest);
-            let (mut x, mut y) = (0.0, 0.0);
-            for (k, sample) in out[..end].iter_mut().enumerate() {
-                let push = force.get(k).copied().unwrap_or(0.0) * step_s;
-                (x, y) = (x * re - y * im + push, x * im + y * re);
-                *sample += mode.gain * x;
+            let angle = mode.omega * step_s;
+            SampledMode {
+                step: [size * libm::cos(angle), size * libm::sin(angle)],
+                gain: mode.gain * step_s,
+                // After the force the mode is rendered down by 80 dB.
+                ringing: (4.0 * LN_10 / mode.decay_per_s * rate) as usize,
             }
-        }
+        });
+        let sampled: Vec<SampledMode> = sampled.collect();
+        mode_bank::add_modes(&sampled, force, out);
         let edge = (0.01 * rate) as usize;
         let length = out.len();
         for (k, sample) in out.iter_mut().rev().take(edge.min(length)).enumerate() {

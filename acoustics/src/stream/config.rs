@@ -21,6 +21,9 @@ pub struct StreamConfig {
     /// The share of all rays that an update of the tail traces where only source or listener have moved; the rest is
     /// reused, unless these rays indicate another tail: then all are traced. 0.001 to 1.
     pub update_share: f64,
+    /// The share of all rays that impulse responses of the first block trace, 0.001 to 1. Below 1 a stream begins at once: all
+    /// rays follow in the next blocks, one source in each, where the listener stays.
+    pub start_share: f64,
     /// Rays of new impulse responses in one block, 0 to 10,000,000; updates beyond wait for later blocks, and the old
     /// responses are used until then. Early paths and synthesis of a response count as rays, too. 0: as many as they need.
     pub update_rays: usize,
@@ -45,6 +48,7 @@ impl StreamConfig {
             update_part_m: 0.03,
             tracked_reflections: 12,
             update_share: 0.1,
+            start_share: 1.0,
             update_rays: 600,
             max_sources: 64,
         }
@@ -58,6 +62,7 @@ impl StreamConfig {
             update_part_m: 0.15,
             tracked_reflections: 6,
             update_share: 0.15,
+            start_share: 0.2,
             update_rays: 0,
             max_sources: 16,
             ..Self::full()
@@ -111,13 +116,9 @@ impl StreamConfig {
             (0.0, 64.0),
             "0 to 64",
         )?;
-        check_range(
-            AT,
-            "update_share",
-            self.update_share,
-            (1e-3, 1.0),
-            "0.001 to 1",
-        )?;
+        let share = |field, value| check_range(AT, field, value, (1e-3, 1.0), "0.001 to 1");
+        share("update_share", self.update_share)?;
+        share("start_share", self.start_share)?;
         check_range(
             AT,
             "update_rays",

@@ -1,6 +1,7 @@
 //! Streams: sound in step with a world, as blocks of pressure at one receiver while sources, listener and doors move.
 
 mod block_plan;
+mod block_rendering;
 mod config;
 mod convolver;
 mod delay_line;
@@ -20,16 +21,14 @@ use crate::microphone_chain::{self, MicrophoneChain};
 use crate::receiver::Receiver;
 use crate::response::ImpulseResponse;
 use crate::scene::AcousticScene;
-use block_plan::PlannedSource;
+use block_rendering::{BlockRendering, SourceBlock};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{PartId, Pose, State};
-use early::{DelayInterpolation, TrackedPath};
 use glam::Vec3;
 use serde::{Deserialize, Serialize};
 use source_state::{ResponseInputs, SourceState};
-use update_queue::PartialTraceOutcome;
 use xxhash_rust::xxh3::xxh3_64;
 
 const VERSION: u32 = 10;
@@ -150,6 +149,11 @@ impl Stream {
         Self { microphone, ..self }
     }
 
+    /// Sets on how many threads a block is rendered. The samples do not depend on it.
+    pub fn set_threads(&mut self, threads: Threads) {
+        self.threads = threads;
+    }
+
     /// Returns the scene.
     pub fn scene(&self) -> &AcousticScene {
         &self.scene
@@ -223,101 +227,43 @@ impl Stream {
         let mut report = BlockReport::default();
         // Fallible work comes first, so that an error leaves the stream as it was.
         let planned = self.plan(rays, state, sources, receiver, &mut report)?;
-        out.fill(0.0);
-        let (mut old, mut new) = (vec![0.0; out.len()], vec![0.0; out.len()]);
-        let mut signal = vec![0.0; size];
-        for PlannedSource {
-            id,
-            is_playing: named,
-            positions: place,
-            new_response,
-            tracked_paths: followed,
-            waiting_since_block: since,
-            partial_trace: job,
-        } in planned
-        {
-            let at = self.voices.binary_search_by_key(&id, |voice| voice.id);
-            let at = at.unwrap_or_else(|at| {
-                let voice = SourceState::new(id, size, self.partitions);
+        for planned in &planned {
+            let at = self
+                .voices
+                .binary_search_by_key(&planned.id, |voice| voice.id);
+            if let Err(at) = at {
+                let voice = SourceState::new(planned.id, size, self.partitions);
                 self.voices.insert(at, voice);
-                at
-            });
-            let voice = &mut self.voices[at];
-            signal.fill(0.0);
-            // A source that was left out or is no longer named rings out without further input.
-            let fed = sources.iter().filter(|source| named && source.id == id);
-            for source in fed {
-                for (sum, x) in signal.iter_mut().zip(source.signal) {
-                    *sum += x;
-                }
             }
-            let fresh = voice.input.is_silent() || voice.current_response.is_none();
-            voice.input.push(&mut self.fft, &signal);
-            let channels = |heard: &Option<(ResponseInputs, ImpulseResponse)>| {
-                heard.as_ref().map(|(_, response)| response.channels)
-            };
-            let channels_before = channels(&voice.current_response);
-            let before = voice.tracked.paths.take();
-            // Changes of air or microphone do not glide.
-            let effects = |heard: &Option<(ResponseInputs, ImpulseResponse)>| {
-                heard.as_ref().map(|(situation, _)| situation.effects)
-            };
-            let effects_before = effects(&voice.current_response);
-            let other = new_response.is_some() || before.is_some() != followed.is_some();
-            if let Some(new_response) = new_response {
-                voice.current_response = Some(new_response);
+            report.tracked_paths += planned.tracked_paths.as_ref().map_or(0, Vec::len);
+        }
+        // Both lists are by id.
+        let mut voices = self.voices.iter_mut();
+        let blocks = planned.into_iter().map(|planned| {
+            let voice = voices
+                .find(|voice| voice.id == planned.id)
+                .expect("every planned source has its state");
+            SourceBlock {
+                voice,
+                planned: Some(planned),
+                out: vec![0.0; out.len()],
             }
-            let same_channels = channels(&voice.current_response) == channels_before;
-            let jumps = effects(&voice.current_response) != effects_before;
-            if other && let Some((situation, response)) = &voice.current_response {
-                old.fill(0.0);
-                if !fresh && same_channels {
-                    voice.input.convolve(&mut self.fft, &voice.filter, &mut old);
-                }
-                let most = followed.as_ref().map(|_| self.config.tracked_reflections);
-                let samples =
-                    response_without_tracked_paths(&self.scene, situation, response, most);
-                let channels = response.channels;
-                voice.set_filter(&mut self.fft, &samples, channels, self.partitions);
-                voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
-                if fresh {
-                    add(out, &new);
-                } else {
-                    crossfade(out, &old, &new, &self.fade);
-                }
-            } else {
-                voice.input.convolve(&mut self.fft, &voice.filter, &mut new);
-                add(out, &new);
-            }
-            if let Some(paths) = followed {
-                report.tracked_paths += paths.len();
-                let speed_m_s = self.scene.config().air.speed_of_sound_m_s();
-                let wavelets = self.scene.path_filters(speed_m_s, &paths, receiver);
-                let pairs = paths.into_iter().zip(wavelets);
-                let now: Vec<TrackedPath> = pairs
-                    .map(|(path, wavelets)| TrackedPath { path, wavelets })
-                    .collect();
-                let before = before.filter(|_| same_channels).unwrap_or_default();
-                let glide = delay_interpolation(&self.scene, &self.fade, voice);
-                if fresh {
-                    glide.add(&now, &now, out);
-                } else if jumps {
-                    glide.add(&before, &[], out);
-                    glide.add(&[], &now, out);
-                } else {
-                    glide.add(&before, &now, out);
-                }
-                voice.tracked.paths = Some(now);
-            } else if let Some(before) = before.filter(|_| same_channels && !fresh) {
-                delay_interpolation(&self.scene, &self.fade, voice).add(&before, &[], out);
-            }
-            voice.tracked.last_positions = Some(place);
-            voice.pending_update.due_block = since;
-            match job {
-                PartialTraceOutcome::Unchanged => {}
-                PartialTraceOutcome::None => voice.pending_update.job = None,
-                PartialTraceOutcome::Advanced(job) => voice.pending_update.job = Some(job),
-            }
+        });
+        let mut blocks: Vec<SourceBlock<'_>> = blocks.collect();
+        let rendering = BlockRendering {
+            scene: &self.scene,
+            config: &self.config,
+            fft: &self.fft,
+            fade: &self.fade,
+            partitions: self.partitions,
+            sources,
+            receiver,
+        };
+        self.threads
+            .for_each(&mut blocks, |_, block| rendering.render(block));
+        out.fill(0.0);
+        for block in blocks {
+            add(out, &block.out);
         }
         self.voices.retain(|voice| {
             !voice.input.is_silent() || sources.iter().any(|source| source.id == voice.id)
@@ -432,19 +378,6 @@ impl Stream {
     /// Returns a hash of all that affects the future output.
     pub fn hash(&self) -> u64 {
         xxh3_64(&self.encode_state())
-    }
-}
-
-/// Returns the glide of a source's early paths through its block.
-fn delay_interpolation<'a>(
-    scene: &AcousticScene,
-    fade: &'a [f32],
-    voice: &'a SourceState,
-) -> DelayInterpolation<'a> {
-    DelayInterpolation {
-        history: voice.input.history(),
-        rate_hz: f64::from(scene.config().rate_hz),
-        fade,
     }
 }
 

@@ -48,8 +48,10 @@ pub(super) struct UpdateRequest<'a> {
 }
 
 /// The outcome of a partial trace.
+#[derive(Default)]
 pub(super) enum PartialTraceOutcome {
     Unchanged,
+    #[default]
     None,
     Advanced(Box<TraceJob>),
 }
@@ -62,6 +64,59 @@ enum UpdateUrgency {
     Moved,
     Stale,
     None,
+}
+
+/// What is computed for a source in a block.
+enum ResponseWork<'a> {
+    /// The response of the source at this place in the order.
+    Shared {
+        inputs: ResponseInputs,
+        place: usize,
+    },
+    /// One of an earlier block.
+    Known(&'a (ResponseInputs, ImpulseResponse)),
+    Rotation {
+        inputs: ResponseInputs,
+        response: &'a ImpulseResponse,
+    },
+    /// Few rays, and the rest of the tail reused; all rays where another tail shows and these may be traced.
+    FewRays {
+        inputs: ResponseInputs,
+        before: &'a (ResponseInputs, ImpulseResponse),
+        may_trace_all: bool,
+    },
+    /// So many rays, and nothing else.
+    Rough { inputs: ResponseInputs, rays: usize },
+    /// All rays, of which at `most` so many now.
+    AllRays {
+        job: Box<TraceJob>,
+        most: usize,
+        ends: bool,
+    },
+}
+
+impl ResponseWork<'_> {
+    /// Returns the situation of the response that there will be.
+    fn inputs(&self) -> Option<&ResponseInputs> {
+        match self {
+            Self::Shared { inputs, .. }
+            | Self::Known((inputs, _))
+            | Self::Rotation { inputs, .. }
+            | Self::FewRays { inputs, .. }
+            | Self::Rough { inputs, .. } => Some(inputs),
+            Self::AllRays { job, ends, .. } => ends.then_some(&job.situation),
+        }
+    }
+}
+
+/// A computed response; none where rays are left to trace.
+#[derive(Default)]
+struct ComputedResponse {
+    response: Option<(ResponseInputs, ImpulseResponse)>,
+    partial_trace: PartialTraceOutcome,
+    traced_responses: usize,
+    rotated: usize,
+    rays: usize,
 }
 
 impl<'a> UpdateRequest<'a> {
@@ -117,10 +172,10 @@ impl RayBudget {
 
 impl Stream {
     /// Computes the responses whose turn it is.
-    pub(super) fn update_responses(
-        &self,
+    pub(super) fn update_responses<'a>(
+        &'a self,
         around: &BlockContext<'_>,
-        wants: &mut [UpdateRequest<'_>],
+        wants: &mut [UpdateRequest<'a>],
         report: &mut BlockReport,
     ) -> Result<(), AcousticsError> {
         // Before the first block nothing can wait.
@@ -130,7 +185,7 @@ impl Stream {
             served: false,
             settled: false,
         };
-        let mut order: Vec<&mut UpdateRequest<'_>> = Vec::new();
+        let mut order: Vec<&mut UpdateRequest<'a>> = Vec::new();
         for want in wants {
             match want.need() {
                 // The situation is again that of the response.
@@ -152,24 +207,44 @@ impl Stream {
                 )
             });
         }
-        for k in 0..order.len() {
+        let mut work: Vec<Option<ResponseWork<'_>>> = Vec::new();
+        for want in &mut order {
+            let chosen = self.choose_work(around, &work, want, &mut budget);
+            work.push(chosen);
+        }
+        let computed = self.threads.map(order.len(), |k| {
+            let work = work[k].as_ref()?;
+            Some(self.compute(around, order[k].id, work))
+        });
+        for (k, (work, computed)) in work.into_iter().zip(computed).enumerate() {
             let (earlier, rest) = order.split_at_mut(k);
             let want = &mut *rest[0];
-            self.update_one(around, earlier, want, &mut budget, report)?;
+            if let Some(computed) = computed {
+                let computed = computed?;
+                report.traced_responses += computed.traced_responses;
+                report.rays += computed.rays;
+                report.rotated += computed.rotated;
+                want.new_response = match work {
+                    Some(ResponseWork::Shared { place, .. }) => earlier[place].new_response.clone(),
+                    _ => computed.response,
+                };
+                want.partial_trace = computed.partial_trace;
+                want.is_waiting = want.new_response.is_none();
+            }
             report.waiting_sources += usize::from(want.is_waiting);
         }
         Ok(())
     }
 
-    /// `earlier`: the sources whose turn came before in this block.
-    fn update_one(
-        &self,
+    /// Chooses what is computed for a source; `None`: nothing in this block. `earlier`: what is computed for the sources whose
+    /// turn came before.
+    fn choose_work<'a>(
+        &'a self,
         around: &BlockContext<'_>,
-        earlier: &[&mut UpdateRequest<'_>],
-        want: &mut UpdateRequest<'_>,
+        earlier: &[Option<ResponseWork<'a>>],
+        want: &mut UpdateRequest<'a>,
         budget: &mut RayBudget,
-        report: &mut BlockReport,
-    ) -> Result<(), AcousticsError> {
+    ) -> Option<ResponseWork<'a>> {
         let (heard, threshold, passing) = (
             want.current_response(),
             &around.threshold,
@@ -182,40 +257,41 @@ impl Stream {
         match (want.change, heard) {
             (ResponseInputChange::None, Some(_)) if !settles => {
                 want.is_waiting = true;
-                return Ok(());
+                return None;
             }
             (ResponseInputChange::Rotated, Some((then, response))) => {
                 want.is_waiting = !budget.may_start(ROTATION_COST_RAYS);
-                if !want.is_waiting {
-                    budget.spend(ROTATION_COST_RAYS);
-                    report.rotated += 1;
-                    // The echogram stays that of the place where it was traced.
-                    let mut turned = then.clone();
-                    turned.receiver.pose.rotation = want.now.receiver.pose.rotation;
-                    let response =
-                        self.scene
-                            .rotated_response(response, &turned.receiver, turned.noise);
-                    want.new_response = Some((turned, response));
+                if want.is_waiting {
+                    return None;
                 }
-                return Ok(());
+                budget.spend(ROTATION_COST_RAYS);
+                // The echogram stays that of the place where it was traced.
+                let mut inputs = then.clone();
+                inputs.receiver.pose.rotation = want.now.receiver.pose.rotation;
+                return Some(ResponseWork::Rotation { inputs, response });
             }
             _ => {}
         }
         // An impact on the table uses the response of the one before it, and the five of a plate that rattles use one: other
         // sources' impulse responses serve as well.
-        let usable = |then: &ResponseInputs| {
-            (passing || !then.has_approximate_tail)
-                && then.change(&want.now, threshold) == ResponseInputChange::None
-        };
-        let voices = self.voices.iter();
-        let before = voices.filter_map(|voice| voice.current_response.as_ref());
+        let fits =
+            |then: &ResponseInputs| then.change(&want.now, threshold) == ResponseInputChange::None;
         let now = earlier
             .iter()
-            .filter_map(|other| other.new_response.as_ref());
-        if let Some(known) = now.chain(before).find(|(then, _)| usable(then)) {
-            want.partial_trace = PartialTraceOutcome::None;
-            want.new_response = Some(known.clone());
-            return Ok(());
+            .map(|work| work.as_ref().and_then(ResponseWork::inputs));
+        let mut now = now.enumerate();
+        let shared = now.find_map(|(place, then)| then.filter(|then| fits(then)).map(|_| place));
+        if let Some(place) = shared {
+            let inputs = want.now.clone();
+            return Some(ResponseWork::Shared { inputs, place });
+        }
+        let voices = self.voices.iter();
+        let mut before = voices.filter_map(|voice| voice.current_response.as_ref());
+        let usable = |(then, _): &&(ResponseInputs, ImpulseResponse)| {
+            (passing || !then.has_approximate_tail) && fits(then)
+        };
+        if let Some(known) = before.find(usable) {
+            return Some(ResponseWork::Known(known));
         }
         let alike = |then: &ResponseInputs| {
             !settles && then.differs_by_positions_only(&want.now, threshold, passing)
@@ -224,67 +300,57 @@ impl Stream {
             .filter(|(then, _)| alike(then))
             .or_else(|| self.response_of_nearby_source(around.rays, &want.now, alike));
         match again {
-            Some(before) => self.update_with_few_rays(around, want, before, budget, report),
-            None => self.update_fully(around, want, budget, report),
+            Some(before) => self.choose_few_rays(around, want, before, budget),
+            None => self.choose_all_rays(around, want, budget),
         }
     }
 
-    /// Updates with few rays, and the rest reused.
-    fn update_with_few_rays(
+    /// Few rays, and the rest reused.
+    fn choose_few_rays<'a>(
         &self,
         around: &BlockContext<'_>,
         want: &mut UpdateRequest<'_>,
-        (then, response): &(ResponseInputs, ImpulseResponse),
+        before: &'a (ResponseInputs, ImpulseResponse),
         budget: &mut RayBudget,
-        report: &mut BlockReport,
-    ) -> Result<(), AcousticsError> {
+    ) -> Option<ResponseWork<'a>> {
         let rays = partial_ray_count(self.scene.config(), self.config.update_share);
         want.is_waiting =
             want.need() != UpdateUrgency::Immediate && !budget.may_start(rays + RESPONSE_COST_RAYS);
         if want.is_waiting {
-            return Ok(());
+            return None;
         }
         budget.spend(rays + RESPONSE_COST_RAYS);
-        let memory = TailHistory {
-            previous: &response.echogram,
-            moved_m: then.displacement_m(&want.now),
-            share: self.config.update_share,
-            update: self.block,
-        };
-        let all = budget.holds(self.scene.config().rays);
-        let way = self.response_updater(around, want.id, &want.now);
-        let (response, known) = way.update_from_history(&memory, all)?;
-        report.traced_responses += 1;
-        report.rays += response.echogram.ray_statistics.rays as usize;
-        want.now.has_approximate_tail =
-            around.large_part_moving || then.has_approximate_tail || !known;
-        want.partial_trace = PartialTraceOutcome::None;
-        want.new_response = Some((want.now.clone(), response));
-        Ok(())
+        let mut inputs = want.now.clone();
+        inputs.has_approximate_tail = around.large_part_moving || before.0.has_approximate_tail;
+        Some(ResponseWork::FewRays {
+            inputs,
+            before,
+            may_trace_all: budget.holds(self.scene.config().rays),
+        })
     }
 
-    /// Updates with all rays, or as many as the budget allows.
-    fn update_fully(
+    /// All rays, or as many as the budget allows.
+    fn choose_all_rays<'a>(
         &self,
         around: &BlockContext<'_>,
-        want: &mut UpdateRequest<'_>,
+        want: &mut UpdateRequest<'a>,
         budget: &mut RayBudget,
-        report: &mut BlockReport,
-    ) -> Result<(), AcousticsError> {
-        let all = self.scene.config().rays;
-        if want.current_response().is_none() && !budget.holds(all) {
-            let share = partial_ray_count(self.scene.config(), self.config.update_share);
-            let rays = share
-                .min(budget.left.unwrap_or(all))
-                .clamp(MIN_RAYS.min(all), all);
+    ) -> Option<ResponseWork<'a>> {
+        let config = self.scene.config();
+        let all = config.rays;
+        let begins = self.block == 0 && self.config.start_share < 1.0;
+        if want.current_response().is_none() && (begins || !budget.holds(all)) {
+            let rays = if begins {
+                partial_ray_count(config, self.config.start_share)
+            } else {
+                let share = partial_ray_count(config, self.config.update_share);
+                share.min(budget.left.unwrap_or(all))
+            };
+            let rays = rays.clamp(MIN_RAYS.min(all), all);
             budget.spend(rays + RESPONSE_COST_RAYS);
-            let way = self.response_updater(around, want.id, &want.now);
-            let response = way.trace_with_rays(rays)?;
-            report.traced_responses += 1;
-            report.rays += rays;
-            want.now.has_approximate_tail = true;
-            want.new_response = Some((want.now.clone(), response));
-            return Ok(());
+            let mut inputs = want.now.clone();
+            inputs.has_approximate_tail = true;
+            return Some(ResponseWork::Rough { inputs, rays });
         }
         let is_waiting = want.need() != UpdateUrgency::Immediate;
         let most = match budget.left {
@@ -293,7 +359,7 @@ impl Stream {
         };
         if is_waiting && !budget.may_start(MIN_RAYS) {
             want.is_waiting = true;
-            return Ok(());
+            return None;
         }
         let mut job = match want.started() {
             Some(job) if job.is_still_valid(&want.now, &around.threshold) => Box::new(job.clone()),
@@ -301,31 +367,84 @@ impl Stream {
             Some(_) if is_waiting => {
                 (want.is_waiting, want.due_block, want.partial_trace) =
                     (true, self.block, PartialTraceOutcome::None);
-                return Ok(());
+                return None;
             }
             _ => Box::new(TraceJob {
                 situation: want.now.clone(),
-                progress: TraceProgress::new(self.scene.config(), 1),
+                progress: TraceProgress::new(config, 1),
             }),
         };
         // It is rendered with the head's present rotation.
         job.situation.receiver.pose.rotation = want.now.receiver.pose.rotation;
-        let before = job.progress.rays();
-        let way = self.response_updater(around, want.id, &job.situation);
-        let response = way.trace_incrementally(&mut job.progress, most)?;
-        let rays = job.progress.rays() - before;
-        report.rays += rays;
-        budget.spend(rays);
-        if let Some(response) = response {
-            budget.spend(RESPONSE_COST_RAYS);
-            report.traced_responses += 1;
-            want.partial_trace = PartialTraceOutcome::None;
-            want.new_response = Some((job.situation, response));
-        } else {
-            want.is_waiting = true;
-            want.partial_trace = PartialTraceOutcome::Advanced(job);
+        let left = all.saturating_sub(job.progress.rays());
+        let ends = job.progress.ends_within(all, most);
+        budget.spend(most.min(left) + if ends { RESPONSE_COST_RAYS } else { 0 });
+        Some(ResponseWork::AllRays { job, most, ends })
+    }
+
+    /// Computes a response.
+    fn compute(
+        &self,
+        around: &BlockContext<'_>,
+        id: u64,
+        work: &ResponseWork<'_>,
+    ) -> Result<ComputedResponse, AcousticsError> {
+        let mut computed = ComputedResponse::default();
+        match work {
+            // Taken from the other when all are computed.
+            ResponseWork::Shared { .. } => {}
+            ResponseWork::Known(known) => computed.response = Some((*known).clone()),
+            ResponseWork::Rotation { inputs, response } => {
+                computed.rotated = 1;
+                computed.partial_trace = PartialTraceOutcome::Unchanged;
+                let response =
+                    self.scene
+                        .rotated_response(response, &inputs.receiver, inputs.noise);
+                computed.response = Some((inputs.clone(), response));
+            }
+            ResponseWork::FewRays {
+                inputs,
+                before: (then, response),
+                may_trace_all,
+            } => {
+                let memory = TailHistory {
+                    previous: &response.echogram,
+                    moved_m: then.displacement_m(inputs),
+                    share: self.config.update_share,
+                    update: self.block,
+                };
+                let way = self.response_updater(around, id, inputs);
+                let (response, known) = way.update_from_history(&memory, *may_trace_all)?;
+                computed.traced_responses = 1;
+                computed.rays = response.echogram.ray_statistics.rays as usize;
+                let mut inputs = inputs.clone();
+                inputs.has_approximate_tail |= !known;
+                computed.response = Some((inputs, response));
+            }
+            ResponseWork::Rough { inputs, rays } => {
+                let response = self
+                    .response_updater(around, id, inputs)
+                    .trace_with_rays(*rays)?;
+                computed.traced_responses = 1;
+                computed.rays = *rays;
+                computed.response = Some((inputs.clone(), response));
+            }
+            ResponseWork::AllRays { job, most, .. } => {
+                let mut job = job.clone();
+                let before = job.progress.rays();
+                let way = self.response_updater(around, id, &job.situation);
+                let response = way.trace_incrementally(&mut job.progress, *most)?;
+                computed.rays = job.progress.rays() - before;
+                match response {
+                    Some(response) => {
+                        computed.traced_responses = 1;
+                        computed.response = Some((job.situation, response));
+                    }
+                    None => computed.partial_trace = PartialTraceOutcome::Advanced(job),
+                }
+            }
         }
-        Ok(())
+        Ok(computed)
     }
 
     fn response_updater<'a>(

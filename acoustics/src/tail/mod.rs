@@ -134,6 +134,12 @@ impl TraceProgress {
         self.chunks.saturating_mul(RAYS_PER_CHUNK)
     }
 
+    /// Returns whether [`TailTrace::advance`] by `most` rays traces the last of `count`.
+    pub(crate) fn ends_within(&self, count: usize, most: usize) -> bool {
+        let left = count.div_ceil(RAYS_PER_CHUNK).saturating_sub(self.chunks);
+        (most / RAYS_PER_CHUNK).max(1) >= left
+    }
+
     /// Returns whether it is valid for one receiver: continuing from a damaged snapshot must not panic.
     pub(crate) fn is_valid(&self, config: &AcousticConfig) -> bool {
         let energy = |e: &f64| e.is_finite() && *e >= 0.0;

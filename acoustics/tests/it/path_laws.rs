@@ -318,7 +318,10 @@ fn receivers_are_where_laws_put_them() {
 #[test]
 fn streams_follow_changes_of_air_and_sources() {
     let hall = hall();
-    let config = StreamConfig::rl();
+    let config = StreamConfig {
+        start_share: 1.0,
+        ..StreamConfig::rl()
+    };
     let stream = Stream::new(hall.scene.clone(), config, RandomKey::root(1), Threads::ONE);
     let (mut stream, mut state) = (stream.unwrap(), State::new(&hall.house));
     let signal = vec![0.1; 800];

@@ -350,7 +350,10 @@ fn loose_things_without_large_panels_need_no_rays_when_they_move() {
     ] {
         let mut hall = Hall::new(with_part_of(height_m, hangs), few(300));
         let mut state = State::new(&hall.house);
-        let config = StreamConfig::rl();
+        let config = StreamConfig {
+            start_share: 1.0,
+            ..StreamConfig::rl()
+        };
         let mut stream =
             Stream::new(hall.scene.clone(), config, RandomKey::root(8), Threads::ONE).unwrap();
         let signal = vec![0.1; 800];

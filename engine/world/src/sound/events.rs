@@ -28,6 +28,9 @@ const MOST_RUBS: usize = 8;
 /// Largest number of contact sounds at once; the oldest are dropped, which have decayed the most. A heap of a hundred things
 /// that falls makes as many in half a second, and snapshots have a bound.
 const MOST_RINGING: usize = 256;
+/// Contact sounds nearer than this to where an impact is still heard are heard from there, as one source, m: what falls over
+/// hits the floor many times in one place.
+const ONE_SOURCE_M: f32 = 0.1;
 /// First source ids of impacts, of rubbing pairs, of joints and of agents' feet.
 const FIRST_BLOW_ID: u64 = 1 << 32;
 const FIRST_RUB_ID: u64 = 2 << 32;
@@ -118,13 +121,28 @@ impl WorldSound {
         });
     }
 
-    /// Finds the places in the air of the contact sounds that have none yet.
+    /// Finds the places in the air of the contact sounds that have none yet, and those that are one source with an earlier impact.
     pub(super) fn locate_contact_sounds(&mut self, rays: &RayScene) {
-        for touch in &mut self.touches {
-            let contact = touch.sound.position();
-            touch
-                .air_position
-                .get_or_insert_with(|| nearest_open_air_point(rays, contact));
+        for k in 0..self.touches.len() {
+            let (earlier, rest) = self.touches.split_at_mut(k);
+            let touch = &mut rest[0];
+            if touch.air_position.is_some() {
+                continue;
+            }
+            let place = nearest_open_air_point(rays, touch.sound.position());
+            // Sources of rubbing pairs, joints and feet move; those of impacts do not.
+            let impacts = earlier
+                .iter()
+                .filter(|one| (FIRST_BLOW_ID..FIRST_RUB_ID).contains(&one.id));
+            let distance_m = |one: &ActiveContactSound| {
+                one.air_position
+                    .map_or(f32::INFINITY, |known| known.distance(place))
+            };
+            let nearest = impacts.min_by(|a, b| distance_m(a).total_cmp(&distance_m(b)));
+            match nearest.filter(|one| distance_m(one) < ONE_SOURCE_M) {
+                Some(one) => (touch.id, touch.air_position) = (one.id, one.air_position),
+                None => touch.air_position = Some(place),
+            }
         }
     }
 

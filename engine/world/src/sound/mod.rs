@@ -51,7 +51,7 @@ const FIRST_PLAYED_ID: u64 = 1 << 48;
 pub(crate) struct WorldSound {
     rate_hz: u32,
     block: usize,
-    /// On which receivers hear, one beside the other.
+    /// On which receivers hear.
     threads: Threads,
     preset: String,
     /// The head of all ears; `None`: the built-in sphere.
@@ -79,6 +79,21 @@ struct BlockSource {
     position: Vec3,
     /// Pressure at 1 m, Pa. Shape (sample,).
     signal: Vec<f32>,
+}
+
+impl BlockSource {
+    /// Adds a source of the house's things or of a contact to one of these at the same place, or to the list.
+    fn join_or_push(self, sources: &mut Vec<Self>) {
+        let mut joinable = sources.iter_mut().filter(|one| one.id < FIRST_PLAYED_ID);
+        match joinable.find(|one| one.position == self.position) {
+            Some(one) => {
+                for (sum, x) in one.signal.iter_mut().zip(&self.signal) {
+                    *sum += x;
+                }
+            }
+            None => sources.push(self),
+        }
+    }
 }
 
 impl WorldSound {
@@ -163,6 +178,9 @@ impl WorldSound {
         if !self.ears.is_empty() {
             self.locate_contact_sounds(rays);
             let sources = self.sources(engines, rays, state, self.blocks)?;
+            for ears in &mut self.ears {
+                ears.stream.set_threads(self.threads);
+            }
             let mut rendered: Vec<_> = self.ears.iter_mut().map(|ears| (ears, Ok(()))).collect();
             self.threads.for_each(&mut rendered, |_, (ears, outcome)| {
                 *outcome = ears.render_block(engines.house(), rays, state, &sources);
@@ -243,7 +261,7 @@ impl WorldSound {
         let own = key.child("ears").child(u64::from(listener.agent.0));
         // One background noise for all ears of a world.
         let stream =
-            Stream::new(scene, config, own, Threads::ONE)?.with_room_key(key.child("room"));
+            Stream::new(scene, config, own, self.threads)?.with_room_key(key.child("room"));
         if listener.receiver.is_none() {
             return Ok(stream);
         }
@@ -252,7 +270,8 @@ impl WorldSound {
         Ok(stream.with_microphone_key(receiver.child(listener.receiver_key().as_str())))
     }
 
-    /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts.
+    /// Returns the sources of the block that has just ended or ends now: emitters, playbacks, and contacts. What the house's own
+    /// things and contacts emit at one place is one source.
     fn sources(
         &self,
         engines: &Engines,
@@ -273,11 +292,12 @@ impl WorldSound {
             let time = (self.rate_hz, self.block as u64, start);
             emitters::read_emitter_block(engines, emitter, time, &mut signal)?;
             fade.apply(self.rate_hz, &mut signal);
-            sources.push(BlockSource {
+            let source = BlockSource {
                 id: k as u64,
                 position: state.part_pose[emitter.part].transform_point(places[k]),
                 signal,
-            });
+            };
+            source.join_or_push(&mut sources);
         }
         for playing in &self.playing {
             let mut signal = vec![0.0; self.block];
@@ -293,11 +313,12 @@ impl WorldSound {
         for touch in &self.touches {
             let mut signal = vec![0.0; self.block];
             touch.read(self.rate_hz, start, &mut signal);
-            sources.push(BlockSource {
+            let source = BlockSource {
                 id: touch.id,
                 position: touch.air_position.unwrap_or(touch.sound.position()),
                 signal,
-            });
+            };
+            source.join_or_push(&mut sources);
         }
         Ok(sources)
     }
