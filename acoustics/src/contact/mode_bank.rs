@@ -1,5 +1,10 @@
 //! Decaying modes under a force, several side by side: each sample of a mode needs the one before it.
 
+#![expect(
+    clippy::inline_always,
+    reason = "what is not inline does not use the wider instructions of the function around it"
+)]
+
 use dwell_scene::simd_dispatch::{SimdKernel, SimdLevel};
 
 /// Modes side by side: two vectors of 512 bits, whose latency hides each other's.

@@ -12,9 +12,10 @@ pub use edges::DiffractionEdge;
 pub(crate) use edges::EdgeTable;
 
 use dwell_scene::bvh::Hit;
-use dwell_scene::{Aabb, House, Id, PartId, Pose, State};
+use dwell_scene::parallel::Threads;
+use dwell_scene::{Aabb, House, Id, PartId, PlacedMesh, Pose, State};
 use glam::Vec3;
-use std::collections::BTreeSet;
+use std::collections::{BTreeSet, HashMap};
 
 /// Marks a triangle without a plane: it reflects rays, but has no images.
 pub const NO_PLANE: u32 = u32::MAX;
@@ -58,6 +59,62 @@ struct MovingPlanes {
     is_large: bool,
 }
 
+/// What the triangles that cannot move make.
+struct FixedPlanes {
+    planes: Vec<Plane>,
+    of_triangle: Vec<u32>,
+    pieces: panels::PanelTable,
+    reliefs: Vec<f32>,
+    edges: Vec<DiffractionEdge>,
+}
+
+impl FixedPlanes {
+    fn new(corners: &[[Vec3; 3]]) -> Self {
+        let (planes, of_triangle) = cluster::cluster_coplanar(corners);
+        let pieces = panels::find_panels(corners, &of_triangle);
+        Self {
+            reliefs: surface_relief::relief_depths_m(corners, &planes, &of_triangle, &pieces),
+            edges: edge_detection::find_edges(corners, &of_triangle),
+            planes,
+            of_triangle,
+            pieces,
+        }
+    }
+}
+
+/// What the triangles of a part that can move make, in part space.
+struct PartPlanes {
+    planes: Vec<Plane>,
+    of_triangle: Vec<u32>,
+    /// Shape (triangle,).
+    panel_area_m2: Vec<f32>,
+    edges: Vec<DiffractionEdge>,
+    /// From corner to corner of its box, m.
+    size_m: f32,
+}
+
+impl PartPlanes {
+    fn new(house: &House, placed: &PlacedMesh) -> Self {
+        let mesh = &house.meshes[placed.mesh];
+        let corners: Vec<[Vec3; 3]> = (0..mesh.triangles.len())
+            .map(|k| {
+                let corners = mesh.corners(k);
+                corners.map(|p| placed.part_from_mesh.transform_point3(p))
+            })
+            .collect();
+        let (planes, of_triangle) = cluster::cluster_coplanar(&corners);
+        Self {
+            panel_area_m2: panels::find_panels(&corners, &of_triangle).area_m2,
+            edges: edge_detection::find_edges(&corners, &of_triangle),
+            size_m: Aabb::from_points(corners.into_iter().flatten())
+                .size()
+                .length(),
+            planes,
+            of_triangle,
+        }
+    }
+}
+
 /// The plane of every triangle of a house.
 #[derive(Clone, Debug)]
 pub struct PlaneTable {
@@ -94,12 +151,39 @@ impl PlaneTable {
             .iter()
             .map(|source| corners_of(source.placed as usize, source.triangle))
             .collect();
-        let (mut at_start, planes) = cluster::cluster_coplanar(&fixed);
+        // Many parts have the mesh of another.
+        let placed_parts: Vec<&PlacedMesh> = geometry
+            .movable
+            .iter()
+            .map(|part| geometry.placed_part(*part))
+            .collect();
+        let mut shapes: Vec<&PlacedMesh> = Vec::new();
+        let mut known: HashMap<_, usize> = HashMap::new();
+        let shape_of: Vec<usize> = placed_parts
+            .iter()
+            .map(|placed| {
+                let numbers = placed.part_from_mesh.to_cols_array().map(f32::to_bits);
+                *known.entry((placed.mesh, numbers)).or_insert_with(|| {
+                    shapes.push(placed);
+                    shapes.len() - 1
+                })
+            })
+            .collect();
+        let threads = Threads::default();
+        let (fixed_planes, shapes) = threads.join(
+            || FixedPlanes::new(&fixed),
+            || threads.map(shapes.len(), |k| PartPlanes::new(house, shapes[k])),
+        );
+        let FixedPlanes {
+            planes: mut at_start,
+            of_triangle: planes,
+            pieces,
+            reliefs,
+            edges,
+        } = fixed_planes;
+        let mut edges = EdgeTable::new(edges);
         let mut of_triangle = vec![NO_PLANE; total];
         let mut panels = vec![ReflectorPanel::NONE; total];
-        let pieces = panels::find_panels(&fixed, &planes);
-        let reliefs = surface_relief::relief_depths_m(&fixed, &at_start, &planes, &pieces);
-        let mut edges = EdgeTable::new(edge_detection::find_edges(&fixed, &planes));
         for (k, source) in geometry.static_triangles.iter().enumerate() {
             let place = (first_triangle[source.placed as usize] + source.triangle) as usize;
             of_triangle[place] = planes[k];
@@ -119,38 +203,28 @@ impl PlaneTable {
         let structures = house.structure.len();
         let jointed: BTreeSet<PartId> = house.joints.iter().map(|joint| joint.child).collect();
         let mut moving = Vec::with_capacity(geometry.movable.len());
-        for part in geometry.movable.iter().copied() {
-            let placed = geometry.placed_part(part);
-            let mesh = &house.meshes[placed.mesh];
-            let corners: Vec<[Vec3; 3]> = (0..mesh.triangles.len())
-                .map(|k| {
-                    let corners = mesh.corners(k);
-                    corners.map(|p| placed.part_from_mesh.transform_point3(p))
-                })
-                .collect();
-            let (planes, of_part) = cluster::cluster_coplanar(&corners);
+        for (part, shape) in geometry.movable.iter().copied().zip(shape_of) {
+            let shape = &shapes[shape];
             let base = first_triangle[structures + part.index()] as usize;
-            let pieces = panels::find_panels(&corners, &of_part);
-            for (panel, area_m2) in panels[base..].iter_mut().zip(pieces.area_m2) {
-                panel.area_m2 = area_m2;
+            for (panel, area_m2) in panels[base..].iter_mut().zip(&shape.panel_area_m2) {
+                panel.area_m2 = *area_m2;
             }
-            edges.add_moving(part, edge_detection::find_edges(&corners, &of_part));
-            for (k, plane) in of_part.into_iter().enumerate() {
-                if plane != NO_PLANE {
+            edges.add_moving(part, shape.edges.clone());
+            for (k, plane) in shape.of_triangle.iter().enumerate() {
+                if *plane != NO_PLANE {
                     of_triangle[base + k] = at_start.len() as u32 + plane;
                 }
             }
             let first = at_start.len();
             let pose = house.parts[part].world_from_part;
-            at_start.extend(planes.iter().map(|plane| moved(plane, &pose)));
-            let size_m = Aabb::from_points(corners.into_iter().flatten()).size();
+            at_start.extend(shape.planes.iter().map(|plane| moved(plane, &pose)));
             let is_panel = |plane: &Plane| plane.area_m2 >= MIN_PANEL_AREA_M2;
             moving.push(MovingPlanes {
                 part,
                 first,
-                is_large: jointed.contains(&part) && size_m.length() >= MIN_JOINTED_SIZE_M
-                    || planes.iter().any(is_panel),
-                planes,
+                is_large: jointed.contains(&part) && shape.size_m >= MIN_JOINTED_SIZE_M
+                    || shape.planes.iter().any(is_panel),
+                planes: shape.planes.clone(),
             });
         }
         Self {

@@ -239,15 +239,12 @@ impl Stream {
         }
         // Both lists are by id.
         let mut voices = self.voices.iter_mut();
-        let blocks = planned.into_iter().map(|planned| {
-            let voice = voices
-                .find(|voice| voice.id == planned.id)
-                .expect("every planned source has its state");
-            SourceBlock {
-                voice,
+        let blocks = planned.into_iter().filter_map(|planned| {
+            Some(SourceBlock {
+                voice: voices.find(|voice| voice.id == planned.id)?,
                 planned: Some(planned),
                 out: vec![0.0; out.len()],
-            }
+            })
         });
         let mut blocks: Vec<SourceBlock<'_>> = blocks.collect();
         let rendering = BlockRendering {

@@ -6,13 +6,12 @@ use crate::env::Env;
 use crate::episode::{Answer, QuestionTokens, StepInfo};
 use crate::episode_spec::EpisodeSpec;
 use crate::error::WorldError;
+use crate::first_use::FirstUse;
 use crate::sensors::{Dtype, ObservationBuffer, SensorSpec};
-use dwell_acoustics::signals;
 use dwell_acoustics::utterance::MAX_TOKENS;
 use dwell_scene::AgentId;
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
-use std::collections::BTreeSet;
 
 /// Environments of one make: the same agents act in all, and shapes and types of their observations are the same.
 #[derive(Debug)]
@@ -371,33 +370,19 @@ impl Batch {
         let reset = |k: usize, env: &mut Env| {
             env.reset_stated_with_listeners(seeds[k].unwrap_or_default(), &specs[k])
         };
-        let (names, rate_hz) = self.unsynthesized_signals(&active);
+        let beginning = self.envs.iter().zip(&active).filter(|(_, on)| **on);
+        let first_use = FirstUse::of(beginning.map(|(env, _)| env));
         self.end_episodes_on_interrupt(&active, |batch| {
-            if names.is_empty() {
-                batch.run_active_and_render(&active, reset)?;
-                return Ok(());
+            if first_use.is_empty() {
+                return batch.run_active_and_render(&active, reset).map(|_| ());
             }
-            // The first time: loops of sound take longest, and need nothing of the world.
             let threads = batch.threads;
-            let names: Vec<&str> = names.iter().map(String::as_str).collect();
-            let make = || signals::presynthesize(&names, rate_hz, threads);
+            let make = || first_use.make(threads);
             threads
                 .join(make, || batch.run_active_and_render(&active, reset))
                 .1?;
             Ok(())
         })
-    }
-
-    /// Returns the signals that the starting environments will play and nobody has made yet; all have one rate.
-    fn unsynthesized_signals(&self, active: &[bool]) -> (Vec<String>, u32) {
-        let beginning = self.envs.iter().zip(active).filter(|(_, on)| **on);
-        let (mut all, mut rate_hz) = (BTreeSet::new(), 0);
-        for (names, rate) in beginning.map(|(env, _)| env.active_signals_and_rate()) {
-            let unmade = names.into_iter();
-            all.extend(unmade.filter(|name| signals::needs_synthesis(name, rate)));
-            rate_hz = rate_hz.max(rate);
-        }
-        (all.into_iter().collect(), rate_hz)
     }
 
     /// Steps the environments for which `actions` has any.

@@ -45,6 +45,9 @@ fn requests_by_renderer<'a>(
 ) -> Result<Vec<RendererGroup<'a>>, WorldError> {
     let mut groups: Vec<RendererGroup<'a>> = Vec::new();
     for (number, env) in envs {
+        if env.requests().views.is_empty() {
+            continue;
+        }
         let (world, requests, results) = env.world_and_image_buffers();
         let renderer = world.engines().image_renderer(&world.config().renderer)?;
         let same = |group: &RendererGroup<'_>| Arc::ptr_eq(&group.renderer, &renderer);

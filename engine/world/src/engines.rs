@@ -168,6 +168,19 @@ impl Engines {
             .clone())
     }
 
+    /// Returns whether the scene of [`Self::acoustic_scene`] is made, or being made.
+    pub(crate) fn has_acoustic_scene(&self, preset: &str, rate_hz: u32) -> bool {
+        let Ok(scenes) = self.acoustics.try_lock() else {
+            return true;
+        };
+        scenes.contains_key(&(preset.to_owned(), rate_hz))
+    }
+
+    /// Returns whether the tables of pictures are made.
+    pub(crate) fn has_renderer(&self) -> bool {
+        self.renderer.get().is_some()
+    }
+
     /// Adds a head for the agents' ears; [`WorldConfig::sound_head`] names it.
     pub fn add_head(&self, head: &Head) {
         let mut heads = self.heads.lock().unwrap_or_else(PoisonError::into_inner);

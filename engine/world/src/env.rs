@@ -9,6 +9,7 @@ use crate::episode_spec::EpisodeSpec;
 use crate::error::{WorldError, no_agent};
 use crate::sensor_requests::{RenderedImages, SensorRequests};
 use crate::world::World;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Id, IdVec, Pose};
 use std::sync::Arc;
@@ -61,7 +62,14 @@ impl Env {
                 body.camera_fov_deg = fov_deg;
             }
         }
-        let world = World::new(engines, &world_config)?;
+        // All tasks look for places on the floor; what fails here fails again there, and is told there.
+        let walkers = agents
+            .iter()
+            .filter_map(|agent| world_config.agents.get(agent.id.index()));
+        let shared = engines.clone();
+        let grids = || walkers.for_each(|body| drop(shared.nav_grid(body)));
+        let (world, ()) = Threads::default().join(|| World::new(engines, &world_config), grids);
+        let world = world?;
         let mut requests = SensorRequests::default();
         for sensor in agents.iter().flat_map(|agent| &agent.sensors) {
             sensor.request(&world, &mut requests);

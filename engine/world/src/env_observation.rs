@@ -69,14 +69,6 @@ impl Env {
         &self.requests
     }
 
-    /// The signals that will be heard as soon as somebody listens, and their rate; none where no sensor listens.
-    pub(crate) fn active_signals_and_rate(&self) -> (Vec<String>, u32) {
-        if self.requests.listeners.is_empty() {
-            return (Vec::new(), 0);
-        }
-        self.world.active_signals_and_rate()
-    }
-
     /// The world, and the buffers for its pictures, at the same time.
     pub(crate) fn world_and_image_buffers(
         &mut self,

@@ -24,6 +24,7 @@ mod error;
 mod expert;
 mod external_task;
 mod eye_camera;
+mod first_use;
 mod fixtures;
 mod floor_plan;
 mod free_memory;

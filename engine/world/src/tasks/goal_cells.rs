@@ -4,8 +4,8 @@ use dwell_scene::interrupt::CancelPoller;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{Aabb, House, RoomId};
 use glam::Vec3;
-use std::cell::OnceCell;
 use std::collections::BTreeMap;
+use std::sync::OnceLock;
 
 /// Edge of the squares by which cells are found, m.
 const SQUARE_M: f32 = 1.0;
@@ -20,7 +20,7 @@ pub(super) struct LargestIslandIndex<'a> {
     /// By squares along x and z.
     squares: BTreeMap<[i32; 2], Vec<NavCell>>,
     /// The rooms on the four sides of each cell, as soon as a room is a goal. Shape (cell,).
-    sides: OnceCell<Vec<[Option<RoomId>; 4]>>,
+    sides: OnceLock<Vec<[Option<RoomId>; 4]>>,
 }
 
 fn cell_block_of(value: f32) -> i32 {
@@ -41,7 +41,7 @@ impl<'a> LargestIslandIndex<'a> {
             grid,
             cells,
             squares,
-            sides: OnceCell::new(),
+            sides: OnceLock::new(),
         }
     }
 

@@ -13,6 +13,7 @@ use crate::error::WorldError;
 use crate::schema;
 use crate::world::World;
 use dwell_scene::AgentId;
+use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_semantics::instruct::{self, InstructionKind};
 
@@ -85,25 +86,29 @@ impl GoalKind for InstructionFollowing {
     ) -> Vec<NavigationGoal> {
         let engines = world.engines().clone();
         let scene = engines.semantics().scene(world.state());
-        let mut offers = Vec::new();
-        for kind in &self.settings.kinds {
-            for instruction in instruct::candidates(&scene, *kind) {
-                let asked = instruction.goal.clone();
-                let told = EpisodeGoal {
-                    kind: kind.name(),
-                    rooms: asked.rooms.clone(),
-                    objects: asked.objects.clone(),
-                    ..EpisodeGoal::default()
-                };
-                let offer =
-                    NavigationGoal::from_instruction_goal((world, agent), ground, asked, told);
-                offers.extend(offer.map(|offer| NavigationGoal {
-                    instruction: Some(instruction),
-                    ..offer
-                }));
-            }
-        }
-        offers
+        let kinds = self.settings.kinds.iter();
+        let asked: Vec<_> = kinds
+            .flat_map(|kind| {
+                let all = instruct::candidates(&scene, *kind).into_iter();
+                all.map(|instruction| (kind.name(), instruction))
+            })
+            .collect();
+        let offers = Threads::default().map(asked.len(), |k| {
+            let (kind, instruction) = &asked[k];
+            let asked = instruction.goal.clone();
+            let told = EpisodeGoal {
+                kind,
+                rooms: asked.rooms.clone(),
+                objects: asked.objects.clone(),
+                ..EpisodeGoal::default()
+            };
+            let offer = NavigationGoal::from_instruction_goal((world, agent), ground, asked, told)?;
+            Some(NavigationGoal {
+                instruction: Some(instruction.clone()),
+                ..offer
+            })
+        });
+        offers.into_iter().flatten().collect()
     }
 
     fn begin(
