@@ -25,5 +25,6 @@ mod rooms;
 mod rooms_apart;
 mod shoebox_images;
 mod stream;
+mod stream_start;
 mod utterances;
 mod walls;
