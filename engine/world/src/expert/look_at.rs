@@ -7,6 +7,7 @@ use dwell_scene::math::wrap_angle;
 use dwell_scene::space::{pitch_from_forward, rotation_from_yaw_pitch, yaw_from_forward};
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
+use std::f32::consts::FRAC_PI_2;
 
 /// Steps of the view beyond the corners of a thing's box that are tried.
 const BEYOND: i32 = 1;
@@ -16,6 +17,8 @@ const MOST: i32 = 20;
 const LEVEL: f32 = 0.9;
 /// Angle from the middle of the view within which a place to put something down is free, where there is such a place, rad.
 const BESIDE_RAD: f32 = 0.1;
+/// Largest difference of a surface's height from that of a point on it, m.
+const SAME_HEIGHT_M: f32 = 0.05;
 /// Steepest view, rad; as far as necks of `dwell_physics` go.
 const STEEPEST_RAD: f32 = 1.5;
 
@@ -30,6 +33,19 @@ pub(crate) enum LookAction {
     Missed,
 }
 
+impl LookAction {
+    /// The first of so many turns to the left and tilts upwards.
+    fn of_steps(steps: (i32, i32)) -> Self {
+        match steps {
+            (0, 0) => Self::Done,
+            (across, _) if across > 0 => Self::Turn(DiscreteAction::TurnLeft),
+            (across, _) if across < 0 => Self::Turn(DiscreteAction::TurnRight),
+            (_, up) if up > 0 => Self::Turn(DiscreteAction::LookUp),
+            _ => Self::Turn(DiscreteAction::LookDown),
+        }
+    }
+}
+
 /// What of a thing is looked at.
 #[derive(Clone, Copy, Debug, PartialEq)]
 pub(crate) enum LookTarget {
@@ -37,6 +53,64 @@ pub(crate) enum LookTarget {
     Anywhere,
     /// A level surface, on which things can be put.
     LevelSurface,
+}
+
+/// The next turn or tilt that brings the middle of an agent's view onto the level surface at the height of a point, as near to
+/// it as steps of the view go, at most `around_m` from it. What is in the hand is looked past.
+pub(crate) fn look_at_surface(
+    world: &World,
+    agent: AgentId,
+    (point, around_m): (Vec3, f32),
+    stride: &StepSizes,
+) -> LookAction {
+    let Some(agent) = world.state().agents.get(agent) else {
+        return LookAction::Missed;
+    };
+    let eye = agent.eye_position();
+    let held = agent
+        .holding
+        .map(|held| world.house().entity_of_object(held));
+    let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
+    let to_point = point - eye;
+    // No less than the angle that the surface around the point takes, as asin x is no more than x π / 2.
+    let wide = FRAC_PI_2 * (around_m / to_point.length().max(0.1)).min(1.0);
+    let span = |angle: f32, step: f32| {
+        ((angle - wide) / step).floor() as i32..=((angle + wide) / step).ceil() as i32
+    };
+    let across = span(wrap_angle(yaw_from_forward(to_point) - agent.yaw_rad), turn);
+    let up = span(pitch_from_forward(to_point) - agent.pitch_rad, look);
+    let distance_m = |yaw_rad: f32, pitch_rad: f32| {
+        let forward = rotation_from_yaw_pitch(yaw_rad, pitch_rad) * Vec3::NEG_Z;
+        let ray = Ray::new(eye, forward);
+        let hit = match held {
+            Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
+            None => world.rays().closest(&ray, RayMask::EYE),
+        }?;
+        let at = ray.point_at(hit.distance_m);
+        let is_level = world.rays().surface(&hit).normal.y.abs() > LEVEL;
+        let is_there = (at.y - point.y).abs() <= SAME_HEIGHT_M && at.distance(point) <= around_m;
+        (is_level && is_there).then(|| at.distance(point))
+    };
+    let mut best: Option<((bool, f32), (i32, i32))> = None;
+    for steps in across.flat_map(|across| up.clone().map(move |up| (across, up))) {
+        let yaw_rad = agent.yaw_rad + steps.0 as f32 * turn;
+        let pitch_rad = agent.pitch_rad + steps.1 as f32 * look;
+        if pitch_rad.abs() > STEEPEST_RAD {
+            continue;
+        }
+        let Some(away_m) = distance_m(yaw_rad, pitch_rad) else {
+            continue;
+        };
+        let beside = [(-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
+        let is_at_rim = beside.into_iter().any(|(x, y)| {
+            distance_m(yaw_rad + x * BESIDE_RAD, pitch_rad + y * BESIDE_RAD).is_none()
+        });
+        let rank = (is_at_rim, away_m);
+        if best.is_none_or(|(other, _)| rank < other) {
+            best = Some((rank, steps));
+        }
+    }
+    best.map_or(LookAction::Missed, |(_, steps)| LookAction::of_steps(steps))
 }
 
 /// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing.
@@ -107,12 +181,5 @@ pub(crate) fn look_at(
         LookTarget::Anywhere => find(0.0),
         LookTarget::LevelSurface => find(BESIDE_RAD).or_else(|| find(0.0)),
     };
-    match found {
-        None => LookAction::Missed,
-        Some((0, 0)) => LookAction::Done,
-        Some((across, _)) if across > 0 => LookAction::Turn(DiscreteAction::TurnLeft),
-        Some((across, _)) if across < 0 => LookAction::Turn(DiscreteAction::TurnRight),
-        Some((_, up)) if up > 0 => LookAction::Turn(DiscreteAction::LookUp),
-        Some(_) => LookAction::Turn(DiscreteAction::LookDown),
-    }
+    found.map_or(LookAction::Missed, LookAction::of_steps)
 }

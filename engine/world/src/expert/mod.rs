@@ -3,7 +3,7 @@
 mod door_opening;
 mod look_at;
 
-pub(crate) use look_at::{LookAction, LookTarget, look_at};
+pub(crate) use look_at::{LookAction, LookTarget, look_at, look_at_surface};
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;

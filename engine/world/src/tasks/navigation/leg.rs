@@ -4,7 +4,7 @@ use super::goal::{NavigationGoal, SuccessRule};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::{
     LookAction, LookTarget, ShortestPathFollower, action_towards_object, action_towards_point,
-    look_at,
+    look_at, look_at_surface,
 };
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -28,6 +28,8 @@ pub(in crate::tasks) struct Leg {
     expert_path: ShortestPathFollower,
     /// Those goals.
     expert_cells: Vec<NavCell>,
+    /// True once the expert has raised what it carries: the hand follows the view.
+    is_raised: bool,
     stride: StepSizes,
 }
 
@@ -42,6 +44,7 @@ impl Leg {
         Self {
             expert_path: guide.clone(),
             expert_cells: goal.cells.clone(),
+            is_raised: false,
             guide,
             goal,
             stride,
@@ -116,9 +119,17 @@ impl Leg {
         )
     }
 
-    /// The expert's next step on the way; `None` where it ends.
+    /// The expert's next step on the way; `None` where it ends. What is in the hand is raised first, over what stands on tables.
     pub(in crate::tasks) fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
-        self.expert_path.next_action(world)
+        let step = self.expert_path.next_action(world)?;
+        let agent = world.state().agents.get(self.expert_path.agent())?;
+        let looks_down = agent.pitch_rad < -0.5 * self.stride.look_deg.to_radians();
+        self.is_raised |= agent.holding.is_none() || !looks_down;
+        Some(if self.is_raised {
+            step
+        } else {
+            DiscreteAction::LookUp
+        })
     }
 
     /// What brings the middle of the view onto a thing from here.
@@ -135,6 +146,16 @@ impl Leg {
     ) -> LookAction {
         let at = (object, LookTarget::LevelSurface);
         look_at(world, self.guide.agent(), at, &self.stride)
+    }
+
+    /// What brings the middle of the view onto the level surface at a point, at most `around_m` from it.
+    pub(in crate::tasks) fn look_at_surface(
+        &self,
+        world: &World,
+        point: Vec3,
+        around_m: f32,
+    ) -> LookAction {
+        look_at_surface(world, self.guide.agent(), (point, around_m), &self.stride)
     }
 
     /// The turn or tilt that brings a point into the middle of the view; `None` once it is there.

@@ -5,7 +5,6 @@ use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::LookAction;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg};
 use crate::world::World;
-use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::{AgentId, ObjectId};
 use glam::Vec3;
@@ -14,15 +13,15 @@ use std::sync::Arc;
 /// Control steps for which it waits for furniture to close, and for a thing to be in its hand.
 const PATIENCE: u32 = 60;
 const GRASPING: u32 = 3;
-/// Places from which it tries to put a thing down before it gives up: something may lie there.
-const REFUSALS: u32 = 5;
+/// Places from which it tries to take a thing or put it down before it gives up: something may lie there.
+const REFUSALS: u32 = 8;
+/// From where its hand acted in vain it does not try again, m: what is in the way there is in the way beside, too.
+const REFUSED_M: f32 = 0.4;
 /// Control steps for which it turns to a point.
 const FACING: u32 = 40;
 /// Control steps for which it keeps opening or closing.
 const SWINGING: u32 = 240;
-/// Least upward part of a level surface's normal, largest difference of its height from that of a point, and distance from there, m.
-const LEVEL: f32 = 0.95;
-const SAME_HEIGHT_M: f32 = 0.05;
+/// Distance of what it looks at from the point where it puts something down, in the first round, m.
 const AROUND_M: f32 = 0.4;
 /// How often it tries all places of an errand again.
 const ROUNDS: u32 = 2;
@@ -45,11 +44,11 @@ pub(super) enum Manipulation {
 pub(super) struct OngoingManipulation {
     pub(super) errand: Manipulation,
     leg: Leg,
-    /// True if it puts things down only where the middle of the view is on a surface at the height of the point.
+    /// True if it puts things down only where the middle of the view is on a level surface at the height of the point.
     by_view: bool,
     /// Control steps for which its hand has been busy.
     busy: u32,
-    /// How often a thing was not put down where it should be.
+    /// How often its hand acted in vain.
     refused: u32,
     /// Control steps for which it has been turning to where it puts something.
     facing: u32,
@@ -80,7 +79,11 @@ impl OngoingManipulation {
             Manipulation::Take(object) => {
                 if self.busy > 0 {
                     self.busy += 1;
-                    return (self.busy < GRASPING).then_some(DiscreteAction::Wait);
+                    if self.busy < GRASPING {
+                        return Some(DiscreteAction::Wait);
+                    }
+                    // It was just out of reach, or something was in the way.
+                    return self.refused(world);
                 }
                 if let Some(step) = self.leg.walk(world) {
                     return Some(step);
@@ -97,23 +100,27 @@ impl OngoingManipulation {
             Manipulation::Put(_, point) => {
                 if self.busy > 0 {
                     // It is done at once, or not at all.
-                    self.refused += 1;
-                    if self.refused >= REFUSALS {
-                        return None;
-                    }
-                    return self.elsewhere(world, BESIDE_M);
+                    return self.refused(world);
                 }
                 if let Some(step) = self.leg.walk(world) {
                     self.facing = 0;
                     return Some(step);
                 }
-                // A point that is almost straight below is never quite ahead.
                 self.facing += 1;
-                if let Some(step) = self.leg.face(world, point).filter(|_| self.facing < FACING) {
-                    return Some(step);
-                }
-                if self.by_view && !self.sees_surface_at(world, point) {
-                    return self.elsewhere(world, BESIDE_M);
+                if self.by_view {
+                    // At first where it was, then on what is around.
+                    let around_m = AROUND_M * (1 + self.rounds) as f32;
+                    match self.leg.look_at_surface(world, point, around_m) {
+                        LookAction::Turn(step) if self.facing < FACING => return Some(step),
+                        LookAction::Done => {}
+                        _ => return self.elsewhere(world, BESIDE_M),
+                    }
+                } else {
+                    // A point that is almost straight below is never quite ahead.
+                    let turning = self.leg.face(world, point);
+                    if let Some(step) = turning.filter(|_| self.facing < FACING) {
+                        return Some(step);
+                    }
                 }
                 self.busy = 1;
                 Some(DiscreteAction::Place)
@@ -145,29 +152,6 @@ impl OngoingManipulation {
         }
     }
 
-    /// Returns whether the middle of the view is on a level surface near a point, at its height.
-    fn sees_surface_at(&self, world: &World, point: Vec3) -> bool {
-        let Some(agent) = world.state().agents.get(self.leg.guide.agent()) else {
-            return false;
-        };
-        let eye = agent.world_from_eye();
-        let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z));
-        let held = agent
-            .holding
-            .map(|held| world.house().entity_of_object(held));
-        let rays = world.rays();
-        let hit = match held {
-            Some(held) => rays.closest_excluding(&ray, RayMask::EYE, held),
-            None => rays.closest(&ray, RayMask::EYE),
-        };
-        hit.is_some_and(|hit| {
-            let at = ray.point_at(hit.distance_m);
-            rays.surface(&hit).normal.y.abs() >= LEVEL
-                && (at.y - point.y).abs() <= SAME_HEIGHT_M
-                && at.distance(point) <= AROUND_M
-        })
-    }
-
     fn look_and_use(
         &mut self,
         world: &World,
@@ -193,6 +177,15 @@ impl OngoingManipulation {
             return Some(DiscreteAction::Wait);
         }
         self.elsewhere(world, ELSEWHERE_M)
+    }
+
+    /// Goes on from another place after the hand acted in vain.
+    fn refused(&mut self, world: &World) -> Option<DiscreteAction> {
+        self.refused += 1;
+        if self.refused >= REFUSALS {
+            return None;
+        }
+        self.elsewhere(world, REFUSED_M)
     }
 
     /// Goes on from another place.

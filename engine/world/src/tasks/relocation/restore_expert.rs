@@ -29,8 +29,12 @@ const OPEN_ENOUGH: f32 = 0.8;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
-/// The order of errands, the least first: whether it was put off, whether it takes something, and the way there, m.
-type ErrandRank = (bool, bool, f64);
+/// Around the box of furniture what stands in it may reach out, m.
+const NEAR_M: f32 = 0.05;
+
+/// The order of errands, the least first: whether it was put off, or has to wait for others; whether it takes something, and the
+/// way there, m.
+type ErrandRank = (u8, bool, f64);
 
 /// The place of a thing before it was moved.
 #[derive(Clone, Debug)]
@@ -54,6 +58,11 @@ impl OriginalPlace {
             foot: bounds.center().with_y(bounds.min.y),
             cells: thing.cells.clone(),
         }
+    }
+
+    /// The middle of the lower side of the thing's box there, m.
+    pub(in crate::tasks) fn foot(&self) -> Vec3 {
+        self.foot
     }
 }
 
@@ -92,6 +101,8 @@ pub(in crate::tasks) struct RestoreExpert {
     grid: Arc<NavGrid>,
     stride: StepSizes,
     places: BTreeMap<ObjectId, OriginalPlace>,
+    /// Other places that are as right for a thing, the last first.
+    spare_places: BTreeMap<ObjectId, Vec<OriginalPlace>>,
     /// Where a hand reaches furniture.
     furniture: BTreeMap<ObjectId, Vec<NavCell>>,
     /// True if what is held is put where the view has a level surface, and not where it belongs.
@@ -121,6 +132,7 @@ impl RestoreExpert {
             grid: grid.clone(),
             stride,
             places,
+            spare_places: BTreeMap::new(),
             furniture,
             by_view: false,
             carrier: None,
@@ -141,6 +153,30 @@ impl RestoreExpert {
         }
     }
 
+    /// The expert of an agent that may put things elsewhere, too: where it gives up a place, the last of these is next.
+    pub(in crate::tasks) fn with_spare_places(
+        self,
+        spare_places: BTreeMap<ObjectId, Vec<OriginalPlace>>,
+    ) -> Self {
+        Self {
+            spare_places,
+            ..self
+        }
+    }
+
+    /// Goes on with another place for a thing; `false` where there is none.
+    fn use_spare_place(&mut self, object: ObjectId) -> bool {
+        let spare = self.spare_places.get_mut(&object).and_then(Vec::pop);
+        match spare {
+            Some(place) => {
+                self.places.insert(object, place);
+                self.takes.remove(&object);
+                true
+            }
+            None => false,
+        }
+    }
+
     /// The next action while some things are misplaced.
     pub(in crate::tasks) fn next_action(
         &mut self,
@@ -155,6 +191,7 @@ impl RestoreExpert {
         self.carrying = if held.is_some() { self.carrying + 1 } else { 0 };
         if self.carrying > CARRYING {
             self.carrier = None;
+            held.map(|object| self.use_spare_place(object));
             return DiscreteAction::Drop;
         }
         let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
@@ -182,7 +219,8 @@ impl RestoreExpert {
             }
         }
         // Each round begins an errand or gives a thing up.
-        for _ in 0..=TAKES as usize * (misplaced.len() + 1) {
+        let spare: usize = self.spare_places.values().map(Vec::len).sum();
+        for _ in 0..=TAKES as usize * (misplaced.len() + spare + 1) {
             if self.carrier.is_none() {
                 self.carrier = self.begin(world, held, misplaced);
             }
@@ -198,9 +236,11 @@ impl RestoreExpert {
                 Manipulation::Take(_) => {}
                 // Something may lie there that it puts in its own place first.
                 Manipulation::Put(object, _) => {
-                    self.postponed.insert(object);
-                    self.carrier = None;
-                    return DiscreteAction::Drop;
+                    if !self.use_spare_place(object) {
+                        self.postponed.insert(object);
+                        self.carrier = None;
+                        return DiscreteAction::Drop;
+                    }
                 }
                 Manipulation::Open(object) | Manipulation::Close(object) => {
                     self.left.insert(object);
@@ -268,6 +308,26 @@ impl RestoreExpert {
         Some(blocked.follower.action_to_open(world, blocked.door))
     }
 
+    /// Returns whether furniture that is to be closed has something in it that belongs elsewhere, or is missing something.
+    fn would_lock_in(&self, world: &World, one: Misplacement, misplaced: &[Misplacement]) -> bool {
+        let Misplacement::Furniture(furniture, false) = one else {
+            return false;
+        };
+        let bounds = |object| world.house().object_bounds(world.state(), object);
+        let within = bounds(furniture).grown(NEAR_M);
+        misplaced.iter().any(|other| match other {
+            Misplacement::Furniture(..) => false,
+            Misplacement::Thing(thing) => {
+                let place = self.places.get(thing).map(|place| place.foot);
+                let given_up = self.left.contains(thing)
+                    || self.takes.get(thing).is_some_and(|takes| *takes >= TAKES);
+                !given_up
+                    && (within.contains(bounds(*thing).center())
+                        || place.is_some_and(|foot| within.contains(foot)))
+            }
+        })
+    }
+
     /// The next errand; `None` where there is none.
     fn begin(
         &mut self,
@@ -275,7 +335,8 @@ impl RestoreExpert {
         held: Option<ObjectId>,
         misplaced: &[Misplacement],
     ) -> Option<OngoingManipulation> {
-        let setup = (self.agent, &self.grid, self.stride);
+        let grid = self.grid.clone();
+        let setup = (self.agent, &grid, self.stride);
         if let Some(object) = held {
             if self.left.contains(&object) {
                 return None;
@@ -290,9 +351,9 @@ impl RestoreExpert {
             });
         }
         let here = world.state().agents.get(self.agent)?.position;
-        let here = self.grid.nearest(here, 0.6)?;
-        let ways = self.grid.distance_field(&[here]);
-        let ground = LargestIslandIndex::of(&self.grid);
+        let here = grid.nearest(here, 0.6)?;
+        let ways = grid.distance_field(&[here]);
+        let ground = LargestIslandIndex::of(&grid);
         let mut best: Option<(ErrandRank, Manipulation, Vec<NavCell>)> = None;
         for one in misplaced {
             if self.left.contains(&one.object()) {
@@ -301,7 +362,8 @@ impl RestoreExpert {
             let (errand, cells) = match *one {
                 Misplacement::Thing(object) => {
                     let tries = self.takes.get(&object).copied().unwrap_or(0);
-                    if tries >= TAKES || !self.places.contains_key(&object) {
+                    let is_given_up = tries >= TAKES && !self.use_spare_place(object);
+                    if is_given_up || !self.places.contains_key(&object) {
                         continue;
                     }
                     let mut cells = cells_in_reach(world, self.agent, &ground, object);
@@ -327,8 +389,12 @@ impl RestoreExpert {
                 continue;
             }
             // What stands open may hide a place, or bar the way.
-            let is_late = self.postponed.contains(&one.object());
-            let rank = (is_late, matches!(errand, Manipulation::Take(_)), way_m);
+            let late = if self.would_lock_in(world, *one, misplaced) {
+                2
+            } else {
+                u8::from(self.postponed.contains(&one.object()))
+            };
+            let rank = (late, matches!(errand, Manipulation::Take(_)), way_m);
             if best.as_ref().is_none_or(|(other, ..)| rank < *other) {
                 best = Some((rank, errand, cells));
             }

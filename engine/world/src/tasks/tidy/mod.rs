@@ -23,7 +23,7 @@ use dwell_semantics::vocabulary;
 use glam::Vec3;
 use rules::{FLOOR, has_rule, is_place_for, is_tidy, room_kind};
 use settings::TidySettings;
-use std::collections::BTreeMap;
+use std::collections::{BTreeMap, BTreeSet};
 use std::sync::Arc;
 
 const NAME: &str = "Tidy";
@@ -32,6 +32,8 @@ const ASKED: &str = "Put things away.";
 const TRIES: usize = 8;
 /// A thing that moved by less lies as before, m.
 const STILL_M: f32 = 0.001;
+/// The most places of things of its kind where the expert puts a thing whose own it gives up.
+const SPARE_PLACES: usize = 4;
 
 const MEASURES: &[TaskMeasure] = &[
     TaskMeasure {
@@ -323,6 +325,7 @@ impl Task for Tidy {
             ..EpisodeGoal::default()
         };
         let things = things.collect();
+        let displaced: BTreeSet<ObjectId> = places.keys().copied().collect();
         // What is knocked over on the way is put back, too.
         let mut places = places;
         for thing in &offer.movable.things {
@@ -333,10 +336,26 @@ impl Task for Tidy {
                 OriginalPlace::new(thing, at)
             });
         }
+        // What is right for a thing is right for all of its kind.
+        let spare_places = displaced.iter().map(|object| {
+            let at = places[object].foot();
+            let alike = offer.tidy.iter().filter(|other| {
+                house.objects[**other].category == house.objects[*object].category
+                    && !displaced.contains(*other)
+            });
+            let mut alike: Vec<&OriginalPlace> =
+                alike.filter_map(|other| places.get(other)).collect();
+            alike.sort_by(|a, b| b.foot().distance(at).total_cmp(&a.foot().distance(at)));
+            let nearest = alike.len().saturating_sub(SPARE_PLACES);
+            (*object, alike.into_iter().skip(nearest).cloned().collect())
+        });
+        let spare_places = spare_places.collect();
         let setup = (agent, &grid, self.setup.stride);
         self.active = Some(ActiveEpisode {
             things,
-            restorer: RestoreExpert::new(setup, places, BTreeMap::new()).placing_by_view(),
+            restorer: RestoreExpert::new(setup, places, BTreeMap::new())
+                .placing_by_view()
+                .with_spare_places(spare_places),
         });
         Ok(Episode {
             agent,
