@@ -175,10 +175,16 @@ class Heads:
             chosen.append(int(value))
         return chosen
 
-    def action(self, logits):
-        """The most likely choices, as an action."""
+    def action(self, logits, rng):
+        """An action that is drawn by its chance, and the most likely answers.
+
+        The most likely action alone would turn to and fro for ever where two are as likely.
+        """
         ends = np.cumsum(self.sizes)[:-1]
-        number, *rest = (int(part.argmax()) for part in np.split(logits, ends))
+        of_action, *of_answers = np.split(logits, ends)
+        chances = np.exp(of_action - of_action.max())
+        number = int(rng.choice(len(chances), p=chances / chances.sum()))
+        rest = [int(part.argmax()) for part in of_answers]
         if not self.fields:
             return number
         answer = {}
@@ -257,13 +263,15 @@ class Learner:
         """A network, and what its inputs are centred and divided by."""
         self.network, self.center, self.scale = network, center, scale
         self.history = History()
+        self.rng = np.random.default_rng(0)
 
     def reset(self, observation, info):
         self.history = History()
+        self.rng = np.random.default_rng(0)
 
     def act(self, observation):
         inputs = (self.history.add(observation) - self.center) / self.scale
-        return self.network.heads.action(self.network.logits(inputs)[-1])
+        return self.network.heads.action(self.network.logits(inputs)[-1], self.rng)
 
 
 def learnt(inputs, labels, heads, updates):

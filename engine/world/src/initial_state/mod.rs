@@ -1,15 +1,16 @@
 //! Initial states of the worlds of one house and one config.
 
+mod default_spot;
 mod snapshot_base;
 
 pub(crate) use snapshot_base::{SnapshotBase, SnapshotParts, serialize_snapshot_parts};
 
 use crate::config::WorldConfig;
 use crate::error::WorldError;
+use default_spot::default_spot;
 use dwell_physics::{PhysicsConfig, PhysicsModel, PhysicsWorld, StartReport};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{Address, AgentStart, AgentState, House, PersonState, State};
-use glam::Vec3;
+use dwell_scene::{Address, AgentStart, AgentState, PersonState, State};
 use std::sync::{Arc, OnceLock};
 
 /// The initial state of a world: nothing overlaps, things have come to rest where that was requested, doors are shut, agents stand
@@ -39,7 +40,7 @@ impl InitialWorld {
         let mut state = State::new(house);
         // Agents come first: parameters and laws may name them.
         let spot = AgentStart {
-            position: default_spot(house),
+            position: default_spot(house, &state, &config.agents),
             yaw_rad: 0.0,
         };
         for (k, body) in config.agents.iter().enumerate() {
@@ -74,13 +75,4 @@ impl InitialWorld {
             base: OnceLock::new(),
         })
     }
-}
-
-/// The middle of the first room's floor, or the origin.
-fn default_spot(house: &House) -> Vec3 {
-    house.rooms.iter().next().map_or(Vec3::ZERO, |room| {
-        let corners = room.footprint.first().copied().unwrap_or_default();
-        let middle = (corners[0] + corners[1] + corners[2]) / 3.0;
-        Vec3::new(middle.x, room.floor_y, middle.y)
-    })
 }
