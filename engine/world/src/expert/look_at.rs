@@ -17,6 +17,8 @@ const MOST: i32 = 20;
 const LEVEL: f32 = 0.9;
 /// Angle from the middle of the view within which a place to put something down is free, where there is such a place, rad.
 const BESIDE_RAD: f32 = 0.1;
+/// From points where something was put down in vain the next are further away, m.
+const AWAY_M: f32 = 0.12;
 /// Largest difference of a surface's height from that of a point on it, m.
 const SAME_HEIGHT_M: f32 = 0.05;
 /// Steepest view, rad; as far as necks of `dwell_physics` go.
@@ -113,11 +115,28 @@ pub(crate) fn look_at_surface(
     best.map_or(LookAction::Missed, |(_, steps)| LookAction::of_steps(steps))
 }
 
-/// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing.
+/// What the middle of an agent's view is on, looked past what is in its hand.
+pub(crate) fn point_in_view_centre(world: &World, agent: AgentId) -> Option<Vec3> {
+    let agent = world.state().agents.get(agent)?;
+    let eye = agent.world_from_eye();
+    let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z));
+    let held = agent
+        .holding
+        .map(|held| world.house().entity_of_object(held));
+    let hit = match held {
+        Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
+        None => world.rays().closest(&ray, RayMask::EYE),
+    }?;
+    Some(ray.point_at(hit.distance_m))
+}
+
+/// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing; away from the points
+/// that were tried in vain where there is such a place.
 pub(crate) fn look_at(
     world: &World,
     agent: AgentId,
     (object, part): (ObjectId, LookTarget),
+    tried: &[Vec3],
     stride: &StepSizes,
 ) -> LookAction {
     let Some(agent) = world.state().agents.get(agent) else {
@@ -144,7 +163,7 @@ pub(crate) fn look_at(
         let high = steps.into_iter().fold(f32::NEG_INFINITY, f32::max).ceil() as i32;
         (low - BEYOND).max(-MOST)..=(high + BEYOND).min(MOST)
     };
-    let hits = |yaw_rad: f32, pitch_rad: f32| {
+    let hits = |yaw_rad: f32, pitch_rad: f32, away_m: f32| {
         if pitch_rad.abs() > STEEPEST_RAD {
             return false;
         }
@@ -159,27 +178,34 @@ pub(crate) fn look_at(
         hit.is_some_and(|hit| {
             let surface = world.rays().surface(&hit);
             let fits = part == LookTarget::Anywhere || surface.normal.y.abs() > LEVEL;
-            surface.entity == entity && fits
+            let at = ray.point_at(hit.distance_m);
+            let is_new = tried.iter().all(|point| point.distance(at) >= away_m);
+            surface.entity == entity && fits && is_new
         })
     };
-    let meets = |(across, up): (i32, i32), beside_rad: f32| {
+    let meets = |(across, up): (i32, i32), (beside_rad, away_m): (f32, f32)| {
         let yaw_rad = agent.yaw_rad + across as f32 * turn;
         let pitch_rad = agent.pitch_rad + up as f32 * look;
         let around = [(0.0, 0.0), (-1.0, 0.0), (1.0, 0.0), (0.0, -1.0), (0.0, 1.0)];
         let mut around = around
             .into_iter()
             .map(|(x, y)| (x * beside_rad, y * beside_rad));
-        around.all(|(x, y)| hits(yaw_rad + x, pitch_rad + y))
+        around.all(|(x, y)| hits(yaw_rad + x, pitch_rad + y, away_m))
     };
     let tilts = span(tilts);
     let steps = span(turns).flat_map(|across| tilts.clone().map(move |up| (across, up)));
     let mut steps: Vec<(i32, i32)> = steps.collect();
     steps.sort_by_key(|(across, up)| (across.abs() + up.abs(), *across, *up));
-    let find = |beside_rad: f32| steps.iter().copied().find(|own| meets(*own, beside_rad));
+    let find = |beside_rad: f32, away_m: f32| {
+        let mut steps = steps.iter().copied();
+        steps.find(|own| meets(*own, (beside_rad, away_m)))
+    };
     // Where something is put down, a place with room around it comes first.
     let found = match part {
-        LookTarget::Anywhere => find(0.0),
-        LookTarget::LevelSurface => find(BESIDE_RAD).or_else(|| find(0.0)),
+        LookTarget::Anywhere => find(0.0, 0.0),
+        LookTarget::LevelSurface => find(BESIDE_RAD, AWAY_M)
+            .or_else(|| find(0.0, AWAY_M))
+            .or_else(|| find(0.0, 0.0)),
     };
     found.map_or(LookAction::Missed, LookAction::of_steps)
 }

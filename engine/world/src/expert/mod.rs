@@ -1,9 +1,11 @@
 //! A guide that knows the house: it follows shortest paths, opens doors, turns to things.
 
+mod blocked_door;
 mod door_opening;
 mod look_at;
 
-pub(crate) use look_at::{LookAction, LookTarget, look_at, look_at_surface};
+pub(crate) use blocked_door::BlockedDoors;
+pub(crate) use look_at::{LookAction, LookTarget, look_at, look_at_surface, point_in_view_centre};
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;
@@ -19,7 +21,7 @@ use std::sync::Arc;
 /// Distance ahead at which it looks for closed doors, m: further than a door leaf is wide, nearer than its arm is long.
 const DOOR_AHEAD_M: f32 = 1.4;
 /// Look-ahead distance on the path, m.
-const AIM_AHEAD_M: f32 = 1.0;
+const AIM_AHEAD_M: f32 = 2.5;
 /// A door is open enough to pass from this share on.
 const PASSABLE: f32 = 0.8;
 

@@ -4,7 +4,7 @@ use super::planned_step::{LegEndAction, PlannedStep};
 use super::step_places::reach_goal;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
-use crate::expert::LookAction;
+use crate::expert::{BlockedDoors, LookAction, point_in_view_centre};
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
@@ -40,6 +40,16 @@ struct StepProgress {
     is_broken: bool,
 }
 
+/// Where the hand acted.
+#[derive(Clone, Copy, Debug)]
+struct TriedPlace {
+    at: LegPlace,
+    /// Where the agent stood.
+    stood: Vec3,
+    /// What the middle of its view was on.
+    looked_at: Option<Vec3>,
+}
+
 /// The instruction of the episode that is played.
 #[derive(Debug)]
 pub(super) struct ActiveInstruction {
@@ -50,6 +60,8 @@ pub(super) struct ActiveInstruction {
     /// The leg that is gone.
     at: LegPlace,
     leg: Leg,
+    /// Doors that what the expert carries keeps from opening.
+    doors: BlockedDoors,
     /// The walkable way from the end of each leg to the end of the last one, m. Shape (step, target, leg).
     later_m: Vec<Vec<Vec<f64>>>,
     /// Control steps for which the expert has been busy with its hand.
@@ -57,7 +69,7 @@ pub(super) struct ActiveInstruction {
     /// How often it has tried all places of the leg in vain.
     rounds: u32,
     /// Where the hand acted on legs of the step that is done now: of one that has to be gone again it did so in vain.
-    tried: Vec<(LegPlace, Vec3)>,
+    tried: Vec<TriedPlace>,
 }
 
 impl ActiveInstruction {
@@ -71,6 +83,7 @@ impl ActiveInstruction {
         Self {
             later_m: later_distances(&steps, grid),
             leg: Leg::new(agent, grid.clone(), first, stride),
+            doors: BlockedDoors::new((agent, grid, stride)),
             steps,
             forbidden,
             progress: StepProgress::default(),
@@ -171,8 +184,8 @@ impl ActiveInstruction {
             if at.step != self.at.step {
                 self.tried.clear();
             }
-            let tried = self.tried.iter().filter(|(leg, _)| *leg == at);
-            let tried: Vec<Vec3> = tried.map(|(_, place)| *place).collect();
+            let tried = self.tried.iter().filter(|tried| tried.at == at);
+            let tried: Vec<Vec3> = tried.map(|tried| tried.stood).collect();
             if !tried.is_empty() {
                 self.leg.avoid_goals_near(&tried, ELSEWHERE_M);
             }
@@ -265,11 +278,21 @@ impl ActiveInstruction {
         step.conditions.iter().filter(so).count()
     }
 
-    /// The action of the expert: the way, then the hand.
+    /// The action of the expert.
     pub(super) fn expert_action(&mut self, world: &World) -> DiscreteAction {
         if self.is_done() {
             return DiscreteAction::Stop;
         }
+        if let Some(action) = self.doors.next_action(world) {
+            return action;
+        }
+        let action = self.action_of_leg(world);
+        self.doors.count(world, action);
+        action
+    }
+
+    /// The action of the leg: the way, then the hand.
+    fn action_of_leg(&mut self, world: &World) -> DiscreteAction {
         let LegPlace { step, target, leg } = self.at;
         let end = self.steps[step].targets[target].legs[leg].end;
         if let LegEndAction::Hand(DiscreteAction::Open, object) = end
@@ -308,7 +331,9 @@ impl ActiveInstruction {
                 if let Some(step) = self.leg.walk(world) {
                     return step;
                 }
-                let look = self.leg.look_at_level_surface(world, object);
+                let tried = self.tried.iter().filter(|tried| tried.at == self.at);
+                let tried: Vec<Vec3> = tried.filter_map(|tried| tried.looked_at).collect();
+                let look = self.leg.look_at_level_surface(world, object, &tried);
                 self.use_hand(world, look, action)
             }
         }
@@ -332,7 +357,11 @@ impl ActiveInstruction {
     fn act(&mut self, world: &World, action: DiscreteAction) -> DiscreteAction {
         self.busy = 1;
         if let Some(agent) = world.state().agents.get(self.leg.guide.agent()) {
-            self.tried.push((self.at, agent.position));
+            self.tried.push(TriedPlace {
+                at: self.at,
+                stood: agent.position,
+                looked_at: point_in_view_centre(world, self.leg.guide.agent()),
+            });
         }
         action
     }

@@ -135,17 +135,19 @@ impl Leg {
     /// What brings the middle of the view onto a thing from here.
     pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookAction {
         let at = (object, LookTarget::Anywhere);
-        look_at(world, self.guide.agent(), at, &self.stride)
+        look_at(world, self.guide.agent(), at, &[], &self.stride)
     }
 
-    /// What brings the middle of the view onto a level surface of a thing from here.
+    /// What brings the middle of the view onto a level surface of a thing from here, away from the points that were tried in vain
+    /// where there is such a place.
     pub(in crate::tasks) fn look_at_level_surface(
         &self,
         world: &World,
         object: ObjectId,
+        tried: &[Vec3],
     ) -> LookAction {
         let at = (object, LookTarget::LevelSurface);
-        look_at(world, self.guide.agent(), at, &self.stride)
+        look_at(world, self.guide.agent(), at, tried, &self.stride)
     }
 
     /// What brings the middle of the view onto the level surface at a point, at most `around_m` from it.

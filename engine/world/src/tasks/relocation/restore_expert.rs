@@ -3,7 +3,7 @@
 use super::MovableThing;
 use super::manipulation::{Manipulation, OngoingManipulation};
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::ShortestPathFollower;
+use crate::expert::BlockedDoors;
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{cells_in_reach, cells_in_reach_fraction};
 use crate::world::World;
@@ -19,13 +19,6 @@ const TAKES: u32 = 6;
 const FAR_SHARE: f32 = 0.97;
 /// Control steps for which it carries a thing; then it is stuck, and takes it anew.
 const CARRYING: u32 = 500;
-/// Control steps for which it opens a door with a thing in its hand; then it puts the thing down first.
-const OPENING: u32 = 100;
-/// Control steps for which it then opens the door, and turns that it makes away from the door before it lets go.
-const OPENING_EMPTY: u32 = 240;
-const TURNS_DEG: f32 = 120.0;
-/// A door is open enough to pass from this share on.
-const OPEN_ENOUGH: f32 = 0.8;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
@@ -83,17 +76,6 @@ impl Misplacement {
     }
 }
 
-/// A door that a thing in the hand keeps from opening.
-#[derive(Debug)]
-struct BlockedDoor {
-    door: ObjectId,
-    /// Turns that are left until it lets go of the thing.
-    turns: u32,
-    /// Control steps for which it has been opening.
-    opening: u32,
-    follower: ShortestPathFollower,
-}
-
 /// The expert of an episode.
 #[derive(Debug)]
 pub(in crate::tasks) struct RestoreExpert {
@@ -110,10 +92,7 @@ pub(in crate::tasks) struct RestoreExpert {
     carrier: Option<OngoingManipulation>,
     /// Control steps for which it has been carrying.
     carrying: u32,
-    /// Control steps for which it has been opening a door with a full hand.
-    opening: u32,
-    /// A door that it opens with an empty hand.
-    door: Option<BlockedDoor>,
+    doors: BlockedDoors,
     takes: BTreeMap<ObjectId, u32>,
     /// What it brings back after all else.
     postponed: BTreeSet<ObjectId>,
@@ -137,8 +116,7 @@ impl RestoreExpert {
             by_view: false,
             carrier: None,
             carrying: 0,
-            opening: 0,
-            door: None,
+            doors: BlockedDoors::new((agent, grid, stride)),
             takes: BTreeMap::new(),
             postponed: BTreeSet::new(),
             left: BTreeSet::new(),
@@ -185,7 +163,10 @@ impl RestoreExpert {
     ) -> DiscreteAction {
         let holder = world.state().agents.get(self.agent);
         let held = holder.and_then(|agent| agent.holding);
-        if let Some(action) = self.open_blocked_door(world, held) {
+        if let Some(action) = self.doors.next_action(world) {
+            if action == DiscreteAction::Drop {
+                self.carrier = None;
+            }
             return action;
         }
         self.carrying = if held.is_some() { self.carrying + 1 } else { 0 };
@@ -228,7 +209,7 @@ impl RestoreExpert {
                 break;
             };
             if let Some(action) = carrier.next_action(world) {
-                self.count_opening(world, held, action);
+                self.doors.count(world, action);
                 return action;
             }
             match carrier.errand {
@@ -252,60 +233,6 @@ impl RestoreExpert {
             return DiscreteAction::Drop;
         }
         DiscreteAction::Stop
-    }
-
-    /// Notes an action: a door that does not open while the hand is full is opened with an empty one.
-    fn count_opening(&mut self, world: &World, held: Option<ObjectId>, action: DiscreteAction) {
-        if action == DiscreteAction::Open && held.is_some() {
-            self.opening += 1;
-        }
-        if action == DiscreteAction::MoveForward {
-            self.opening = self.opening.saturating_sub(1);
-        }
-        let door = world.object_in_view_centre(self.agent);
-        if self.opening > OPENING
-            && let Some(door) = door
-            && let Some(here) = world.state().agents.get(self.agent)
-            && let Some(here) = self.grid.nearest(here.position, 0.6)
-        {
-            self.opening = 0;
-            let turn = self.stride.turn_deg.max(1.0);
-            self.door = Some(BlockedDoor {
-                door,
-                turns: (TURNS_DEG / turn).ceil() as u32,
-                opening: 0,
-                follower: ShortestPathFollower::new(
-                    self.agent,
-                    self.grid.clone(),
-                    &[here],
-                    self.stride,
-                ),
-            });
-        }
-    }
-
-    /// The next action at a door that a thing in the hand keeps from opening; `None` where there is none.
-    fn open_blocked_door(
-        &mut self,
-        world: &World,
-        held: Option<ObjectId>,
-    ) -> Option<DiscreteAction> {
-        let blocked = self.door.as_mut()?;
-        if held.is_some() {
-            if let Some(left) = blocked.turns.checked_sub(1) {
-                blocked.turns = left;
-                return Some(DiscreteAction::TurnLeft);
-            }
-            self.carrier = None;
-            return Some(DiscreteAction::Drop);
-        }
-        let openness = world.state().openness(world.house(), blocked.door);
-        blocked.opening += 1;
-        if openness.is_none_or(|open| open >= OPEN_ENOUGH) || blocked.opening > OPENING_EMPTY {
-            self.door = None;
-            return None;
-        }
-        Some(blocked.follower.action_to_open(world, blocked.door))
     }
 
     /// Returns whether furniture that is to be closed has something in it that belongs elsewhere, or is missing something.
