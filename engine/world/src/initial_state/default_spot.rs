@@ -27,7 +27,7 @@ pub(super) fn default_spot(house: &House, state: &State, bodies: &[AgentBody]) -
             !is_level || beside.distance(*spot) > reach_m
         })
     };
-    let middles = house.rooms.iter().take(1).flat_map(|room| middle(room));
+    let middles = house.rooms.iter().take(1).filter_map(middle);
     let others = house.rooms.iter().flat_map(points);
     let mut spots = middles.chain(others);
     let first = house.rooms.iter().find_map(middle);
