@@ -5,7 +5,7 @@ use crate::world::World;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::math::wrap_angle;
 use dwell_scene::space::{pitch_from_forward, rotation_from_yaw_pitch, yaw_from_forward};
-use dwell_scene::{AgentId, ObjectId};
+use dwell_scene::{AgentId, AgentState, ObjectId};
 use glam::Vec3;
 use std::f32::consts::FRAC_PI_2;
 
@@ -130,18 +130,16 @@ pub(crate) fn point_in_view_centre(world: &World, agent: AgentId) -> Option<Vec3
     Some(ray.point_at(hit.distance_m))
 }
 
-/// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing; away from the points
+/// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing, as the agent stands
+/// or would stand; away from the points
 /// that were tried in vain where there is such a place.
 pub(crate) fn look_at(
     world: &World,
-    agent: AgentId,
+    agent: &AgentState,
     (object, part): (ObjectId, LookTarget),
     tried: &[Vec3],
     stride: &StepSizes,
 ) -> LookAction {
-    let Some(agent) = world.state().agents.get(agent) else {
-        return LookAction::Missed;
-    };
     let eye = agent.eye_position();
     // What is in the hand is looked past where something is put down, as the hand does.
     let in_hand = agent.holding.filter(|_| part == LookTarget::LevelSurface);

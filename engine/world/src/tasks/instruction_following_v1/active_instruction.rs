@@ -4,7 +4,7 @@ use super::planned_step::{LegEndAction, PlannedStep};
 use super::step_places::reach_goal;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
-use crate::expert::{BlockedDoors, LookAction, point_in_view_centre};
+use crate::expert::{BlockedDoors, LookAction, LookTarget, point_in_view_centre};
 use crate::tasks::goal_cells::LargestIslandIndex;
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
 use crate::world::World;
@@ -325,7 +325,7 @@ impl ActiveInstruction {
                     return step;
                 }
                 let look = self.leg.look_at(world, object);
-                self.use_hand(world, look, action)
+                self.use_hand(world, look, (action, object, LookTarget::Anywhere))
             }
             LegEndAction::Above(action, object) => {
                 if let Some(step) = self.leg.walk(world) {
@@ -334,7 +334,7 @@ impl ActiveInstruction {
                 let tried = self.tried.iter().filter(|tried| tried.at == self.at);
                 let tried: Vec<Vec3> = tried.filter_map(|tried| tried.looked_at).collect();
                 let look = self.leg.look_at_level_surface(world, object, &tried);
-                self.use_hand(world, look, action)
+                self.use_hand(world, look, (action, object, LookTarget::LevelSurface))
             }
         }
     }
@@ -344,10 +344,13 @@ impl ActiveInstruction {
         &mut self,
         world: &World,
         look: LookAction,
-        action: DiscreteAction,
+        (action, object, part): (DiscreteAction, ObjectId, LookTarget),
     ) -> DiscreteAction {
         match look {
             LookAction::Turn(step) => step,
+            LookAction::Missed if self.leg.keep_goals_that_see(world, (object, part)) => {
+                DiscreteAction::Wait
+            }
             LookAction::Missed => self.elsewhere(world, BESIDE_M),
             LookAction::Done => self.act(world, action),
         }

@@ -9,7 +9,7 @@ use crate::expert::{
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::space::forward_from_yaw;
-use dwell_scene::{AgentId, ObjectId};
+use dwell_scene::{AgentId, AgentState, ObjectId};
 use glam::Vec3;
 use std::sync::Arc;
 
@@ -30,6 +30,8 @@ pub(in crate::tasks) struct Leg {
     expert_cells: Vec<NavCell>,
     /// True once the expert has raised what it carries: the hand follows the view.
     is_raised: bool,
+    /// True once only those goals are left from which steps of the view meet the thing.
+    is_narrowed: bool,
     stride: StepSizes,
 }
 
@@ -45,6 +47,7 @@ impl Leg {
             expert_path: guide.clone(),
             expert_cells: goal.cells.clone(),
             is_raised: false,
+            is_narrowed: false,
             guide,
             goal,
             stride,
@@ -81,12 +84,12 @@ impl Leg {
     /// Leads to those goals whose positions are `wanted` from now on; `false` when there are none, or when that are all.
     fn retain_goals(&mut self, wanted: impl Fn(Vec3) -> bool) -> bool {
         let grid = self.expert_path.grid().clone();
-        let before = self.expert_cells.len();
-        self.expert_cells
-            .retain(|cell| wanted(grid.position(*cell)));
-        if self.expert_cells.is_empty() || self.expert_cells.len() == before {
+        let cells = self.expert_cells.iter().copied();
+        let kept: Vec<NavCell> = cells.filter(|cell| wanted(grid.position(*cell))).collect();
+        if kept.is_empty() || kept.len() == self.expert_cells.len() {
             return false;
         }
+        self.expert_cells = kept;
         let id = self.expert_path.agent();
         self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, self.stride);
         true
@@ -134,8 +137,7 @@ impl Leg {
 
     /// What brings the middle of the view onto a thing from here.
     pub(in crate::tasks) fn look_at(&self, world: &World, object: ObjectId) -> LookAction {
-        let at = (object, LookTarget::Anywhere);
-        look_at(world, self.guide.agent(), at, &[], &self.stride)
+        self.look(world, (object, LookTarget::Anywhere), &[])
     }
 
     /// What brings the middle of the view onto a level surface of a thing from here, away from the points that were tried in vain
@@ -146,8 +148,32 @@ impl Leg {
         object: ObjectId,
         tried: &[Vec3],
     ) -> LookAction {
-        let at = (object, LookTarget::LevelSurface);
-        look_at(world, self.guide.agent(), at, tried, &self.stride)
+        self.look(world, (object, LookTarget::LevelSurface), tried)
+    }
+
+    fn look(&self, world: &World, at: (ObjectId, LookTarget), tried: &[Vec3]) -> LookAction {
+        match world.state().agents.get(self.guide.agent()) {
+            Some(agent) => look_at(world, agent, at, tried, &self.stride),
+            None => LookAction::Missed,
+        }
+    }
+
+    /// Leads to those goals alone from whose middles steps of the view meet a thing, the first time that it was missed; `false`
+    /// later, and where these are none or all.
+    pub(in crate::tasks) fn keep_goals_that_see(
+        &mut self,
+        world: &World,
+        at: (ObjectId, LookTarget),
+    ) -> bool {
+        let Some(agent) = world.state().agents.get(self.guide.agent()).copied() else {
+            return false;
+        };
+        let stride = self.stride;
+        !std::mem::replace(&mut self.is_narrowed, true)
+            && self.retain_goals(|position| {
+                let there = AgentState { position, ..agent };
+                look_at(world, &there, at, &[], &stride) != LookAction::Missed
+            })
     }
 
     /// What brings the middle of the view onto the level surface at a point, at most `around_m` from it.

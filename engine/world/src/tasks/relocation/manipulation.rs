@@ -2,7 +2,7 @@
 
 use super::movable_things::cells_goal;
 use crate::actions::{DiscreteAction, StepSizes};
-use crate::expert::LookAction;
+use crate::expert::{LookAction, LookTarget};
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -90,7 +90,7 @@ impl OngoingManipulation {
                 }
                 match self.leg.look_at(world, object) {
                     LookAction::Turn(step) => Some(step),
-                    LookAction::Missed => self.elsewhere(world, BESIDE_M),
+                    LookAction::Missed => self.missed(world, object),
                     LookAction::Done => {
                         self.busy = 1;
                         Some(DiscreteAction::Pick)
@@ -163,7 +163,7 @@ impl OngoingManipulation {
         }
         match self.leg.look_at(world, object) {
             LookAction::Turn(step) => Some(step),
-            LookAction::Missed => self.elsewhere(world, BESIDE_M),
+            LookAction::Missed => self.missed(world, object),
             LookAction::Done => {
                 self.busy = 1;
                 Some(action)
@@ -177,6 +177,15 @@ impl OngoingManipulation {
             return Some(DiscreteAction::Wait);
         }
         self.elsewhere(world, ELSEWHERE_M)
+    }
+
+    /// Goes on from another place after steps of the view did not meet a thing.
+    fn missed(&mut self, world: &World, object: ObjectId) -> Option<DiscreteAction> {
+        let at = (object, LookTarget::Anywhere);
+        if self.leg.keep_goals_that_see(world, at) {
+            return Some(DiscreteAction::Wait);
+        }
+        self.elsewhere(world, BESIDE_M)
     }
 
     /// Goes on from another place after the hand acted in vain.
