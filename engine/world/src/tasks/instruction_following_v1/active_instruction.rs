@@ -184,6 +184,15 @@ impl ActiveInstruction {
             if at.step != self.at.step {
                 self.tried.clear();
             }
+            // What was lost on the way is carried the other way round every second time.
+            let before = LegPlace {
+                leg: at.leg.wrapping_sub(1),
+                ..at
+            };
+            let takes = self.tried.iter().filter(|tried| tried.at == before);
+            if matches!(takes.count(), takes if takes > 0 && takes % 2 == 0) {
+                self.leg.turn_the_other_way();
+            }
             let tried = self.tried.iter().filter(|tried| tried.at == at);
             let tried: Vec<Vec3> = tried.map(|tried| tried.stood).collect();
             if !tried.is_empty() {

@@ -18,6 +18,17 @@ pub(in crate::tasks) const ELSEWHERE_M: f32 = 0.3;
 /// The same where the expert's view, which turns by steps, missed a thing that is small from there.
 pub(in crate::tasks) const BESIDE_M: f32 = 0.1;
 
+/// How the expert first turns on a way.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum FirstTurn {
+    /// To the nearer side, as always.
+    Nearer,
+    /// To the other side, once it turns.
+    Farther,
+    /// To this side until it is ahead.
+    Towards(DiscreteAction),
+}
+
 /// The way to a goal.
 #[derive(Clone, Debug)]
 pub(in crate::tasks) struct Leg {
@@ -30,6 +41,8 @@ pub(in crate::tasks) struct Leg {
     expert_cells: Vec<NavCell>,
     /// True once the expert has raised what it carries: the hand follows the view.
     is_raised: bool,
+    /// The side to which the expert first turns with what it carries, where that is not the nearer one.
+    first_turn: FirstTurn,
     /// True once only those goals are left from which steps of the view meet the thing.
     is_narrowed: bool,
     stride: StepSizes,
@@ -47,6 +60,7 @@ impl Leg {
             expert_path: guide.clone(),
             expert_cells: goal.cells.clone(),
             is_raised: false,
+            first_turn: FirstTurn::Nearer,
             is_narrowed: false,
             guide,
             goal,
@@ -129,10 +143,34 @@ impl Leg {
         let looks_down = agent.pitch_rad < -0.5 * self.stride.look_deg.to_radians();
         self.is_raised |= agent.holding.is_none() || !looks_down;
         Some(if self.is_raised {
-            step
+            self.turned(step)
         } else {
             DiscreteAction::LookUp
         })
+    }
+
+    /// A step of the way, or the turn to the other side.
+    fn turned(&mut self, step: DiscreteAction) -> DiscreteAction {
+        let other = match step {
+            DiscreteAction::TurnLeft => DiscreteAction::TurnRight,
+            DiscreteAction::TurnRight => DiscreteAction::TurnLeft,
+            _ => {
+                self.first_turn = FirstTurn::Nearer;
+                return step;
+            }
+        };
+        if self.first_turn == FirstTurn::Farther {
+            self.first_turn = FirstTurn::Towards(other);
+        }
+        match self.first_turn {
+            FirstTurn::Towards(side) => side,
+            _ => step,
+        }
+    }
+
+    /// Turns to the other side first: what was carried was lost on the nearer one, where something is in its way.
+    pub(in crate::tasks) fn turn_the_other_way(&mut self) {
+        self.first_turn = FirstTurn::Farther;
     }
 
     /// What brings the middle of the view onto a thing from here.

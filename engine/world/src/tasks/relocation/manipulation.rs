@@ -144,6 +144,12 @@ impl OngoingManipulation {
         }
     }
 
+    /// The same errand, on whose way it turns to the other side first.
+    pub(super) fn turning_the_other_way(mut self) -> Self {
+        self.leg.turn_the_other_way();
+        self
+    }
+
     /// An errand of an agent whose `place` goes by its view alone.
     pub(super) fn placing_by_view(self) -> Self {
         Self {

@@ -270,7 +270,12 @@ impl RestoreExpert {
             }
             let place = self.places.get(&object)?;
             let errand = Manipulation::Put(object, place.foot);
-            let carrier = OngoingManipulation::new(errand, place.cells.clone(), setup);
+            let mut carrier = OngoingManipulation::new(errand, place.cells.clone(), setup);
+            // What was lost on the way is carried the other way round every second time.
+            let takes = self.takes.get(&object).copied().unwrap_or(1);
+            if takes.is_multiple_of(2) {
+                carrier = carrier.turning_the_other_way();
+            }
             return Some(if self.by_view {
                 carrier.placing_by_view()
             } else {
