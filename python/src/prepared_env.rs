@@ -6,7 +6,7 @@ use crate::house::PyHouse;
 use crate::stated_episodes::stated_episodes;
 use crate::values::JsonArgument;
 use dwell::{Engines, Env, EnvConfig};
-use dwell_scene::parallel::Threads;
+use dwell_scene::parallel::{Threads, on_one_thread};
 use pyo3::prelude::*;
 use std::sync::{Arc, Mutex, PoisonError};
 
@@ -44,7 +44,7 @@ pub(crate) fn prepared_envs(
         let config: EnvConfig = dwell::parse_config(config_json).map_err(PyFault::Config)?;
         let threads = Threads::try_resolve(threads)?;
         let specs = stated_episodes(stated, shared.len(), config.agents.len())?;
-        let envs = threads.map(shared.len(), |k| {
+        let prepare = |k: usize| {
             let mut env = Env::new(shared[k].clone(), &config)?;
             if let Some(seed) = seeds.get(k).copied().flatten() {
                 let own = specs.get(k).map_or(&[][..], Vec::as_slice);
@@ -52,7 +52,13 @@ pub(crate) fn prepared_envs(
                 env.warm_up(Threads::ONE)?;
             }
             Ok::<_, PyFault>(env)
-        });
+        };
+        // Who prepares on one thread leaves the others to those who step meanwhile.
+        let envs = if threads == Threads::ONE {
+            on_one_thread(|| threads.map(shared.len(), prepare))
+        } else {
+            threads.map(shared.len(), prepare)
+        };
         let wrap = |env: Result<Env, PyFault>| {
             Ok(PyPreparedEnv {
                 env: Mutex::new(Some(env?)),

@@ -174,7 +174,11 @@ fn a_door_that_swings_is_heard_on_its_way_and_exactly_where_it_rests() {
     let mut hall = Hall::new(two_rooms(&wall, &wall), dry(4000));
     let mut state = State::new(&hall.house);
     let new = |hall: &Hall| {
-        let config = StreamConfig::rl();
+        // Equal to the bit from its first block on is a stream that begins with all rays.
+        let config = StreamConfig {
+            start_share: 1.0,
+            ..StreamConfig::rl()
+        };
         Stream::new(hall.scene.clone(), config, RandomKey::root(8), Threads::ONE).unwrap()
     };
     let receiver = Receiver::omni(EAR);

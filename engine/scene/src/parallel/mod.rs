@@ -9,7 +9,7 @@ mod thread_count;
 
 use crate::error::SceneError;
 use crate::interrupt;
-pub use own_threads::apart_from_pool;
+pub use own_threads::{apart_from_pool, on_one_thread};
 use std::sync::{Mutex, PoisonError};
 pub use thread_count::{available_cores, hardware_threads, threads_variable};
 
@@ -40,6 +40,7 @@ impl Threads {
                 "threads",
                 count.to_string(),
             )),
+            None if own_threads::is_single() => Ok(Self::ONE),
             None => Ok(Self::new(thread_count::default_thread_count(
                 threads_variable()?,
             ))),
@@ -50,6 +51,9 @@ impl Threads {
     /// variable is ignored.
     pub fn resolve(requested: Option<usize>) -> Self {
         Self::new(requested.unwrap_or_else(|| {
+            if own_threads::is_single() {
+                return 1;
+            }
             thread_count::default_thread_count(threads_variable().ok().flatten())
         }))
     }
@@ -162,6 +166,17 @@ mod tests {
             assert!((1..=Threads::MAX).contains(&Threads::new(count).count()));
         }
         assert_eq!(Threads::try_resolve(Some(1024)).unwrap().count(), 1024);
+    }
+
+    #[test]
+    fn who_works_alone_has_one_thread_until_it_is_done() {
+        let before = Threads::default();
+        on_one_thread(|| {
+            assert_eq!(Threads::default(), Threads::ONE);
+            assert_eq!(Threads::try_resolve(None).unwrap(), Threads::ONE);
+            assert_eq!(Threads::resolve(Some(3)).count(), 3);
+        });
+        assert_eq!(Threads::default(), before);
     }
 
     #[test]

@@ -11,18 +11,35 @@ use std::thread;
 
 thread_local! {
     static APART: Cell<bool> = const { Cell::new(false) };
+    static SINGLE: Cell<bool> = const { Cell::new(false) };
+}
+
+/// Sets a flag of this thread while `work` runs.
+fn with_flag<R>(flag: &'static std::thread::LocalKey<Cell<bool>>, work: impl FnOnce() -> R) -> R {
+    struct Before(&'static std::thread::LocalKey<Cell<bool>>, bool);
+    impl Drop for Before {
+        fn drop(&mut self) {
+            self.0.set(self.1);
+        }
+    }
+    let _before = Before(flag, flag.replace(true));
+    work()
+}
+
+/// Runs `work` on this thread alone where it says nothing about threads: [`Threads::default`](super::Threads::default) is one in it.
+/// For what is made behind those who must not wait.
+pub fn on_one_thread<R>(work: impl FnOnce() -> R) -> R {
+    with_flag(&SINGLE, work)
+}
+
+/// Returns whether this thread works alone.
+pub(super) fn is_single() -> bool {
+    SINGLE.get()
 }
 
 /// Runs `work`; the parallel loops in it use threads of their own rather than those of the pool. For what is made under a lock.
 pub fn apart_from_pool<R>(work: impl FnOnce() -> R) -> R {
-    struct Before(bool);
-    impl Drop for Before {
-        fn drop(&mut self) {
-            APART.set(self.0);
-        }
-    }
-    let _before = Before(APART.replace(true));
-    work()
+    with_flag(&APART, work)
 }
 
 /// Returns whether this thread's loops keep apart from the pool.
