@@ -131,8 +131,7 @@ pub(crate) fn point_in_view_centre(world: &World, agent: AgentId) -> Option<Vec3
 }
 
 /// The next turn or tilt of the shortest way by steps that brings the middle of an agent's view onto a thing, as the agent stands
-/// or would stand; away from the points
-/// that were tried in vain where there is such a place.
+/// or would stand; away from the points that were tried in vain where there is such a place.
 pub(crate) fn look_at(
     world: &World,
     agent: &AgentState,

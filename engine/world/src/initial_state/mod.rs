@@ -14,7 +14,7 @@ use dwell_scene::{Address, AgentStart, AgentState, PersonState, State};
 use std::sync::{Arc, OnceLock};
 
 /// The initial state of a world: nothing overlaps, things have come to rest where that was requested, doors are shut, agents stand
-/// where the house has them start, or on the first room's floor. Worlds begin with a copy of it, and go back to it.
+/// where the house has them start, or on a floor clear of furniture. Worlds begin with a copy of it, and go back to it.
 #[derive(Debug)]
 pub(crate) struct InitialWorld {
     pub(crate) state: State,

@@ -51,7 +51,7 @@ const FIRST_PLAYED_ID: u64 = 1 << 48;
 pub(crate) struct WorldSound {
     rate_hz: u32,
     block: usize,
-    /// On which receivers hear.
+    /// On how many threads receivers hear.
     threads: Threads,
     preset: String,
     /// The head of all ears; `None`: the built-in sphere.
