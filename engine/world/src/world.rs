@@ -12,13 +12,14 @@ use dwell_physics::{
     PhysicsWorld, StartReport, Target,
 };
 use dwell_render::BackEnd;
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::{Hit, Ray, RayMask};
 use dwell_scene::interrupt;
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::rays::RayScene;
 use dwell_scene::{
-    Address, AgentId, Entity, House, Id, JointCommand, JointId, ObjectId, Parameter, State,
+    Address, AgentId, AgentState, Entity, EntityId, House, Id, JointCommand, JointId, ObjectId,
+    Parameter, State,
 };
 use glam::Vec3;
 use std::sync::Arc;
@@ -315,11 +316,20 @@ impl World {
             .active_signals_and_rate(self.engines.house(), &self.state)
     }
 
-    /// The object in the middle of an agent's view, within 10 m.
+    /// What a ray meets first, looked past what is in an agent's hand, as its hand does.
+    pub(crate) fn closest_past_hand(&self, agent: &AgentState, ray: &Ray) -> Option<Hit> {
+        let held = agent
+            .holding
+            .map_or(EntityId::VOID, |held| self.house().entity_of_object(held));
+        self.rays.closest_excluding(ray, RayMask::EYE, held)
+    }
+
+    /// The object in the middle of an agent's view, within 10 m: what is in its hand is looked past.
     pub fn object_in_view_centre(&self, agent: AgentId) -> Option<ObjectId> {
-        let eye = self.state.agents.get(agent)?.world_from_eye();
+        let agent = self.state.agents.get(agent)?;
+        let eye = agent.world_from_eye();
         let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z)).with_range(0.0, 10.0);
-        let hit = self.rays.closest(&ray, RayMask::EYE)?;
+        let hit = self.closest_past_hand(agent, &ray)?;
         match self.house().entity(self.rays.surface(&hit).entity)? {
             Entity::Object(object) => Some(object),
             _ => None,

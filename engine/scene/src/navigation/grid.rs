@@ -15,7 +15,9 @@ use glam::Vec3;
 use std::sync::Arc;
 
 /// A place to stand: one surface of one column of the grid. Cells keep their numbers when objects move elsewhere.
-#[derive(Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash)]
+#[derive(
+    Clone, Copy, Debug, PartialEq, Eq, PartialOrd, Ord, Hash, serde::Serialize, serde::Deserialize,
+)]
 pub struct NavCell(pub u32);
 
 /// The walkable surfaces of a house in one state: surfaces above each other in the columns of a grid over all storeys,

@@ -1,6 +1,9 @@
 //! Step sizes of the movement actions.
 
+use super::DiscreteAction;
 use crate::error::WorldError;
+use dwell_scene::AgentState;
+use dwell_scene::space::forward_from_yaw;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
 
@@ -27,6 +30,22 @@ impl Default for StepSizes {
 }
 
 impl StepSizes {
+    /// An agent after a step, a turn or a tilt that nothing stops; as it is after any other action.
+    pub(crate) fn after(&self, agent: &AgentState, action: DiscreteAction) -> AgentState {
+        let mut after = *agent;
+        match action {
+            DiscreteAction::MoveForward => {
+                after.position += self.forward_m * forward_from_yaw(agent.yaw_rad);
+            }
+            DiscreteAction::TurnLeft => after.yaw_rad += self.turn_deg.to_radians(),
+            DiscreteAction::TurnRight => after.yaw_rad -= self.turn_deg.to_radians(),
+            DiscreteAction::LookUp => after.pitch_rad += self.look_deg.to_radians(),
+            DiscreteAction::LookDown => after.pitch_rad -= self.look_deg.to_radians(),
+            _ => {}
+        }
+        after
+    }
+
     /// Checks every range.
     ///
     /// # Errors

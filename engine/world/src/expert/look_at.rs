@@ -2,7 +2,7 @@
 
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::world::World;
-use dwell_scene::bvh::{Ray, RayMask};
+use dwell_scene::bvh::Ray;
 use dwell_scene::math::wrap_angle;
 use dwell_scene::space::{pitch_from_forward, rotation_from_yaw_pitch, yaw_from_forward};
 use dwell_scene::{AgentId, AgentState, ObjectId};
@@ -69,9 +69,6 @@ pub(crate) fn look_at_surface(
         return LookAction::Missed;
     };
     let eye = agent.eye_position();
-    let held = agent
-        .holding
-        .map(|held| world.house().entity_of_object(held));
     let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
     let to_point = point - eye;
     // No less than the angle that the surface around the point takes, as asin x is no more than x π / 2.
@@ -84,10 +81,7 @@ pub(crate) fn look_at_surface(
     let distance_m = |yaw_rad: f32, pitch_rad: f32| {
         let forward = rotation_from_yaw_pitch(yaw_rad, pitch_rad) * Vec3::NEG_Z;
         let ray = Ray::new(eye, forward);
-        let hit = match held {
-            Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
-            None => world.rays().closest(&ray, RayMask::EYE),
-        }?;
+        let hit = world.closest_past_hand(agent, &ray)?;
         let at = ray.point_at(hit.distance_m);
         let is_level = world.rays().surface(&hit).normal.y.abs() > LEVEL;
         let is_there = (at.y - point.y).abs() <= SAME_HEIGHT_M && at.distance(point) <= around_m;
@@ -120,13 +114,7 @@ pub(crate) fn point_in_view_centre(world: &World, agent: AgentId) -> Option<Vec3
     let agent = world.state().agents.get(agent)?;
     let eye = agent.world_from_eye();
     let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z));
-    let held = agent
-        .holding
-        .map(|held| world.house().entity_of_object(held));
-    let hit = match held {
-        Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
-        None => world.rays().closest(&ray, RayMask::EYE),
-    }?;
+    let hit = world.closest_past_hand(agent, &ray)?;
     Some(ray.point_at(hit.distance_m))
 }
 
@@ -140,9 +128,6 @@ pub(crate) fn look_at(
     stride: &StepSizes,
 ) -> LookAction {
     let eye = agent.eye_position();
-    // What is in the hand is looked past where something is put down, as the hand does.
-    let in_hand = agent.holding.filter(|_| part == LookTarget::LevelSurface);
-    let held = in_hand.map(|held| world.house().entity_of_object(held));
     let entity = world.house().entity_of_object(object);
     let (turn, look) = (stride.turn_deg.to_radians(), stride.look_deg.to_radians());
     let bounds = world.house().object_bounds(world.state(), object);
@@ -168,10 +153,7 @@ pub(crate) fn look_at(
             eye,
             rotation_from_yaw_pitch(yaw_rad, pitch_rad) * Vec3::NEG_Z,
         );
-        let hit = match held {
-            Some(held) => world.rays().closest_excluding(&ray, RayMask::EYE, held),
-            None => world.rays().closest(&ray, RayMask::EYE),
-        };
+        let hit = world.closest_past_hand(agent, &ray);
         hit.is_some_and(|hit| {
             let surface = world.rays().surface(&hit);
             let fits = part == LookTarget::Anywhere || surface.normal.y.abs() > LEVEL;

@@ -22,6 +22,11 @@ use std::sync::Arc;
 const DOOR_AHEAD_M: f32 = 1.4;
 /// Look-ahead distance on the path, m.
 const AIM_AHEAD_M: f32 = 2.5;
+/// Share of a turn within which something is ahead; of a place further than `FAR_M` that it walks to, so that it does not turn to and
+/// fro between the two directions beside it with every step.
+const AHEAD: f32 = 0.51;
+const WALKING: f32 = 0.75;
+const FAR_M: f32 = 0.5;
 /// A door is open enough to pass from this share on.
 const PASSABLE: f32 = 0.8;
 
@@ -40,6 +45,8 @@ pub struct ShortestPathFollower {
     escapes: u32,
     /// The door that it opens now.
     opening: Option<DoorOpening>,
+    /// The cell to which it walks straight on.
+    aim: Option<NavCell>,
 }
 
 impl ShortestPathFollower {
@@ -55,6 +62,7 @@ impl ShortestPathFollower {
             escape: 0,
             escapes: 0,
             opening: None,
+            aim: None,
         }
     }
 
@@ -103,11 +111,19 @@ impl ShortestPathFollower {
         here: NavCell,
     ) -> Option<DiscreteAction> {
         if let Some(step) = self.escape(agent.collided) {
+            self.aim = None;
             return Some(step);
         }
-        let aim = self.next_waypoint(field, here, agent.position)?;
+        let aim = self.next_waypoint(field, here, agent)?;
+        self.aim = Some(aim);
+        let direction = self.grid.position(aim) - agent.position;
+        let tolerance = if direction.length() > FAR_M {
+            WALKING
+        } else {
+            AHEAD
+        };
         Some(
-            turn_towards(agent.yaw_rad, aim - agent.position, &self.stride)
+            turn_towards(agent.yaw_rad, direction, (tolerance, &self.stride))
                 .unwrap_or(DiscreteAction::MoveForward),
         )
     }
@@ -126,7 +142,10 @@ impl ShortestPathFollower {
         let clear_cells_field = clear_cells_field?;
         if clear_cells_field.at(here)? <= 0.0 {
             if is_within_reach {
-                return Some(self.open(world, door));
+                let step = self.open_from_here(world, door);
+                // From here it is hidden: the way is gone anew.
+                self.opening = self.opening.take().filter(|_| step.is_some());
+                return step;
             }
             if opening.stands_still(world) {
                 // It begins anew.
@@ -161,22 +180,38 @@ impl ShortestPathFollower {
         })
     }
 
-    /// The point of the path that it walks to next: the furthest one within reach of the eye.
-    fn next_waypoint(&self, field: &DistanceField, here: NavCell, position: Vec3) -> Option<Vec3> {
+    /// The cell of the path that it walks to next: the furthest one within reach of the eye. It keeps to the one before until it has
+    /// come to it, or sees one that is further on the way: from beside the middle of a cell others seem nearest with each step.
+    fn next_waypoint(
+        &self,
+        field: &DistanceField,
+        here: NavCell,
+        agent: &AgentState,
+    ) -> Option<NavCell> {
         let way = self.grid.follow_gradient(field, here)?;
-        let near = way
-            .iter()
-            .take_while(|cell| (self.grid.position(**cell) - position).length() <= AIM_AHEAD_M);
+        let away_m = |cell: NavCell| self.grid.position(cell).distance(agent.position);
+        let near = way.iter().take_while(|cell| away_m(**cell) <= AIM_AHEAD_M);
         let ahead: Vec<NavCell> = near.copied().collect();
-        let free = ahead
-            .iter()
-            .rev()
-            .find(|cell| self.grid.is_straight_free(here, **cell));
-        let next = way.get(1).or(way.first())?;
-        Some(
-            self.grid
-                .position(*free.filter(|cell| **cell != here).unwrap_or(next)),
-        )
+        let mut ahead = ahead.into_iter().rev();
+        let free = ahead.find(|cell| self.grid.is_straight_free(here, *cell));
+        let next = *way.get(1).or(way.first())?;
+        let furthest = free.filter(|cell| *cell != here).unwrap_or(next);
+        let left_m = |cell: NavCell| field.at(cell).unwrap_or(f64::INFINITY);
+        let is_ahead = |cell: &NavCell| {
+            !agent.collided
+                && away_m(*cell) > 0.5 * self.stride.forward_m
+                && left_m(*cell) < left_m(here)
+                && left_m(*cell) <= left_m(furthest)
+        };
+        Some(self.aim.filter(is_ahead).unwrap_or(furthest))
+    }
+
+    /// The turn to where it walks straight on, rad, positive to the left; 0 where it does not.
+    pub(crate) fn turn_to_aim_rad(&self, agent: &AgentState) -> f32 {
+        self.aim.map_or(0.0, |aim| {
+            let direction = self.grid.position(aim) - agent.position;
+            wrap_angle(yaw_from_forward(direction) - agent.yaw_rad)
+        })
     }
 
     /// A jointed thing that stands in the way and is not open.
@@ -216,26 +251,43 @@ impl ShortestPathFollower {
         aside.unwrap_or_else(|| self.open(world, thing))
     }
 
-    /// Turns to a door and opens it; waits while it opens.
+    /// Turns to a door and opens it, or walks towards it where it is hidden; waits while it opens.
     fn open(&mut self, world: &World, door: ObjectId) -> DiscreteAction {
-        if let Some(turn) = action_towards_object(world, self.agent, door, &self.stride) {
-            return turn;
-        }
-        if world.object_in_view_centre(self.agent) != Some(door) {
-            return DiscreteAction::MoveForward;
+        let step = self.open_from_here(world, door);
+        step.or_else(|| action_towards_object(world, self.agent, door, &self.stride))
+            .unwrap_or(DiscreteAction::MoveForward)
+    }
+
+    /// Turns to a door and opens it; `None` where its view cannot meet it.
+    fn open_from_here(&mut self, world: &World, door: ObjectId) -> Option<DiscreteAction> {
+        let agent = world.state().agents.get(self.agent)?;
+        match look_at(
+            world,
+            agent,
+            (door, LookTarget::Anywhere),
+            &[],
+            &self.stride,
+        ) {
+            LookAction::Turn(step) => return Some(step),
+            LookAction::Missed => return None,
+            LookAction::Done => {}
         }
         let opening = self.opening.take().filter(|opening| opening.door == door);
         let mut opening = opening.unwrap_or_else(|| DoorOpening::new(door));
         opening.count_open_request(world, &self.grid, self.agent);
         self.opening = Some(opening);
-        DiscreteAction::Open
+        Some(DiscreteAction::Open)
     }
 }
 
-/// The turn that brings `direction` ahead; `None` when it already is, within half a turn's step.
-fn turn_towards(yaw_rad: f32, direction: Vec3, stride: &StepSizes) -> Option<DiscreteAction> {
+/// The turn that brings `direction` ahead; `None` when it already is, within a share of a turn's step.
+fn turn_towards(
+    yaw_rad: f32,
+    direction: Vec3,
+    (tolerance, stride): (f32, &StepSizes),
+) -> Option<DiscreteAction> {
     let error = wrap_angle(yaw_from_forward(direction) - yaw_rad);
-    if error.abs() <= stride.turn_deg.to_radians() * 0.51 {
+    if error.abs() <= stride.turn_deg.to_radians() * tolerance {
         return None;
     }
     Some(if error > 0.0 {
@@ -254,11 +306,11 @@ pub(crate) fn action_towards_point(
 ) -> Option<DiscreteAction> {
     let agent = world.state().agents.get(agent)?;
     let direction = target - agent.eye_position();
-    if let Some(turn) = turn_towards(agent.yaw_rad, direction, stride) {
+    if let Some(turn) = turn_towards(agent.yaw_rad, direction, (AHEAD, stride)) {
         return Some(turn);
     }
     let error = pitch_from_forward(direction) - agent.pitch_rad;
-    if error.abs() <= stride.look_deg.to_radians() * 0.51 {
+    if error.abs() <= stride.look_deg.to_radians() * AHEAD {
         return None;
     }
     Some(if error > 0.0 {

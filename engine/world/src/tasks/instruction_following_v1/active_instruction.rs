@@ -1,25 +1,30 @@
 //! The instruction of an episode: what is done of it, and what the expert does next.
 
 use super::planned_step::{LegEndAction, PlannedStep};
-use super::step_places::reach_goal;
+use super::step_places::DROP_M;
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::expert::{BlockedDoors, LookAction, LookTarget, point_in_view_centre};
 use crate::tasks::goal_cells::LargestIslandIndex;
-use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal};
+use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal, cells_in_reach};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
+use dwell_scene::space::forward_from_yaw;
 use dwell_scene::{AgentId, ObjectId};
 use dwell_semantics::instruct::{ConditionContext, StepCondition};
 use glam::Vec3;
+use serde::{Deserialize, Serialize};
 use std::sync::Arc;
 
 /// Control steps for which the expert waits for what its hand has begun.
 const PATIENCE: u32 = 60;
 /// How often the expert tries all places of a leg again.
-const ROUNDS: u32 = 2;
+const ROUNDS: u32 = 3;
 /// Control steps for which it keeps opening a thing.
 const OPENING: u32 = 240;
+/// A thing that is to be picked up is looked for anew once it is so far from where it lay, m, and slower than this, m/s.
+const MOVED_M: f32 = 0.1;
+const AT_REST_M_S: f32 = 0.05;
 
 /// The place of a leg: its step, target and number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -30,7 +35,7 @@ struct LegPlace {
 }
 
 /// What has come about of an instruction, beside what is so in the world.
-#[derive(Clone, Debug, Default, PartialEq)]
+#[derive(Clone, Debug, Default, PartialEq, Serialize, Deserialize)]
 struct StepProgress {
     /// Steps that are done, in order.
     done: usize,
@@ -38,6 +43,17 @@ struct StepProgress {
     met: Vec<bool>,
     /// True once something was done that was not to be done.
     is_broken: bool,
+    /// Of a leg to a thing that was moved: where it lies now.
+    moved: Option<MovedThing>,
+}
+
+/// A thing that was moved since its places were found.
+#[derive(Clone, Debug, PartialEq, Serialize, Deserialize)]
+struct MovedThing {
+    /// The middle of its box.
+    lies_at: Vec3,
+    /// The cells from which the hand reaches it, rising; of none, the places before are kept.
+    cells: Vec<NavCell>,
 }
 
 /// Where the hand acted.
@@ -68,6 +84,8 @@ pub(super) struct ActiveInstruction {
     busy: u32,
     /// How often it has tried all places of the leg in vain.
     rounds: u32,
+    /// Turns that it has made to let go of something inwards.
+    turns_inwards: u32,
     /// Where the hand acted on legs of the step that is done now: of one that has to be gone again it did so in vain.
     tried: Vec<TriedPlace>,
 }
@@ -90,6 +108,7 @@ impl ActiveInstruction {
             at: LegPlace::default(),
             busy: 0,
             rounds: 0,
+            turns_inwards: 0,
             tried: Vec::new(),
         }
     }
@@ -171,16 +190,8 @@ impl ActiveInstruction {
         let at = self.leg_place(&view);
         if at != self.at {
             let planned = &self.steps[at.step].targets[at.target].legs[at.leg];
-            let is_again = at.step == self.at.step && at.leg < self.at.leg;
-            let goal = match planned.end {
-                // What was put down elsewhere is fetched from there.
-                LegEndAction::Hand(DiscreteAction::Pick, object) if is_again => {
-                    let ground = LargestIslandIndex::of(self.leg.guide.grid());
-                    reach_goal(world, agent, &ground, object)
-                }
-                _ => planned.goal.clone(),
-            };
-            self.leg = self.leg.with_goal(goal);
+            self.leg = self.leg.with_goal(planned.goal.clone());
+            self.progress.moved = None;
             if at.step != self.at.step {
                 self.tried.clear();
             }
@@ -193,14 +204,60 @@ impl ActiveInstruction {
             if matches!(takes.count(), takes if takes > 0 && takes % 2 == 0) {
                 self.leg.turn_the_other_way();
             }
-            let tried = self.tried.iter().filter(|tried| tried.at == at);
-            let tried: Vec<Vec3> = tried.map(|tried| tried.stood).collect();
-            if !tried.is_empty() {
-                self.leg.avoid_goals_near(&tried, ELSEWHERE_M);
-            }
-            (self.at, self.busy, self.rounds) = (at, 0, 0);
+            self.at = at;
+            self.begin_leg();
         }
+        self.follow_moved_thing(world, agent);
         self.progress.done - before
+    }
+
+    /// Leads to where the thing that is to be picked up lies now, where it was moved: it was put down elsewhere, or pushed.
+    fn follow_moved_thing(&mut self, world: &World, agent: AgentId) {
+        let LegPlace { step, target, leg } = self.at;
+        let planned = &self.steps[step].targets[target].legs[leg];
+        let LegEndAction::Hand(DiscreteAction::Pick, object) = planned.end else {
+            return;
+        };
+        let (house, state) = (world.house(), world.state());
+        let is_held = (state.agents.iter()).any(|own| own.holding == Some(object));
+        let speed_m_s = state.part_velocity[house.objects[object].first_part]
+            .linear
+            .length();
+        if is_held || speed_m_s > AT_REST_M_S {
+            return;
+        }
+        let lies_at = house.object_bounds(state, object).center();
+        let known = self.progress.moved.as_ref().map(|moved| moved.lies_at);
+        let known = known.or(planned.goal.told.position);
+        if known.is_some_and(|known| known.distance(lies_at) < MOVED_M) {
+            return;
+        }
+        let ground = LargestIslandIndex::of(self.leg.guide.grid());
+        let cells = cells_in_reach(world, agent, &ground, object);
+        self.lead_to_moved(MovedThing { lies_at, cells });
+    }
+
+    /// Leads to where a thing lies now.
+    fn lead_to_moved(&mut self, moved: MovedThing) {
+        if !moved.cells.is_empty() {
+            let goal = NavigationGoal {
+                cells: moved.cells.clone(),
+                ..self.leg.goal.as_ref().clone()
+            };
+            self.leg = self.leg.with_goal(Arc::new(goal));
+            self.begin_leg();
+        }
+        self.progress.moved = Some(moved);
+    }
+
+    /// Begins the leg, away from where the hand acted in vain.
+    fn begin_leg(&mut self) {
+        let tried = self.tried.iter().filter(|tried| tried.at == self.at);
+        let tried: Vec<Vec3> = tried.map(|tried| tried.stood).collect();
+        if !tried.is_empty() {
+            self.leg.avoid_goals_near(&tried, ELSEWHERE_M);
+        }
+        (self.busy, self.rounds, self.turns_inwards) = (0, 0, 0);
     }
 
     /// The leg that is to be gone: of the first target of the plan that is not as it should be.
@@ -290,7 +347,7 @@ impl ActiveInstruction {
     /// The action of the expert.
     pub(super) fn expert_action(&mut self, world: &World) -> DiscreteAction {
         if self.is_done() {
-            return DiscreteAction::Stop;
+            return self.wait_for_rest(world);
         }
         if let Some(action) = self.doors.next_action(world) {
             return action;
@@ -298,6 +355,22 @@ impl ActiveInstruction {
         let action = self.action_of_leg(world);
         self.doors.count(world, action);
         action
+    }
+
+    /// Ends once what it brought lies still.
+    fn wait_for_rest(&mut self, world: &World) -> DiscreteAction {
+        self.busy += 1;
+        let moves = |object: ObjectId| speed_m_s(world, object) > AT_REST_M_S;
+        let last = self.steps.last().map_or(&[][..], |last| &last.targets);
+        let brought = last.iter().filter_map(|target| match target.condition {
+            StepCondition::LeftIn(object, _) => Some(object),
+            _ => None,
+        });
+        if self.busy < PATIENCE && brought.into_iter().any(moves) {
+            DiscreteAction::Wait
+        } else {
+            DiscreteAction::Stop
+        }
     }
 
     /// The action of the leg: the way, then the hand.
@@ -325,11 +398,14 @@ impl ActiveInstruction {
                 let step = self.leg.approach(world);
                 step.unwrap_or_else(|| self.elsewhere(world, ELSEWHERE_M))
             }
-            LegEndAction::Drop => match self.leg.walk(world) {
-                Some(step) => step,
-                None => self.act(world, DiscreteAction::Drop),
-            },
+            LegEndAction::Drop => {
+                let step = self.leg.walk(world).or_else(|| self.turn_inwards(world));
+                step.unwrap_or_else(|| self.act(world, DiscreteAction::Drop))
+            }
             LegEndAction::Hand(action, object) => {
+                if action == DiscreteAction::Pick {
+                    self.leg.keep_goals_to_turn_at(world, object);
+                }
                 if let Some(step) = self.leg.walk(world) {
                     return step;
                 }
@@ -346,6 +422,22 @@ impl ActiveInstruction {
                 self.use_hand(world, look, (action, object, LookTarget::LevelSurface))
             }
         }
+    }
+
+    /// The turn that brings more of the room ahead, into which what it carries falls; `None` once it is, and after a whole turn.
+    fn turn_inwards(&mut self, world: &World) -> Option<DiscreteAction> {
+        let LegPlace { step, target, .. } = self.at;
+        let StepCondition::LeftIn(_, room) = self.steps[step].targets[target].condition else {
+            return None;
+        };
+        let agent = world.state().agents.get(self.leg.guide.agent())?;
+        let ahead = agent.position + DROP_M * forward_from_yaw(agent.yaw_rad) + 0.1 * Vec3::Y;
+        let turns = (360.0 / self.leg.stride().turn_deg.max(1.0)).ceil() as u32;
+        if world.house().room_at(ahead) == Some(room) || self.turns_inwards >= turns {
+            return None;
+        }
+        self.turns_inwards += 1;
+        Some(DiscreteAction::TurnLeft)
     }
 
     /// Looks where the hand is to act, then uses it; goes elsewhere where it cannot look there.
@@ -384,29 +476,16 @@ impl ActiveInstruction {
         if self.leg.exclude_goals_within(world, radius_m) {
             return DiscreteAction::Wait;
         }
-        // It stands elsewhere in a cell when it comes again.
-        if self.rounds < ROUNDS {
+        if self.rounds < ROUNDS && self.leg.step_back(world, self.rounds) {
             self.rounds += 1;
-            self.leg.restore_all_goals();
-            if self.leg.exclude_goals_within(world, radius_m) {
-                return DiscreteAction::Wait;
-            }
+            return DiscreteAction::Wait;
         }
         DiscreteAction::Stop
     }
 
-    /// What it keeps beside the world: the number of steps that are done, whether it is broken, and what was so once of the next.
+    /// What it keeps beside the world.
     pub(super) fn snapshot(&self) -> Vec<u8> {
-        let StepProgress {
-            done,
-            met,
-            is_broken,
-        } = &self.progress;
-        let met = met.iter().map(|met| u8::from(*met));
-        [*done as u8, u8::from(*is_broken)]
-            .into_iter()
-            .chain(met)
-            .collect()
+        postcard::to_stdvec(&self.progress).expect("plain data can always be written to memory")
     }
 
     /// Takes over what a snapshot keeps.
@@ -419,39 +498,37 @@ impl ActiveInstruction {
         agent: AgentId,
         bytes: &[u8],
     ) -> Result<(), WorldError> {
-        let fault = || {
-            Err(WorldError::Snapshot(format!(
-                "the progress of its instruction is {bytes:?}; allowed are the number of steps that are done, up to {}, and 0 or 1 \
-                 for each condition",
-                self.steps.len()
-            )))
+        let grid = self.leg.guide.grid().clone();
+        let is_of_this = |progress: &StepProgress| {
+            let conditions = self.steps.get(progress.done);
+            let conditions = conditions.map_or(0, |own| own.step.conditions.len());
+            let moved = progress.moved.iter();
+            progress.done <= self.steps.len()
+                && [0, conditions].contains(&progress.met.len())
+                && moved
+                    .flat_map(|moved| &moved.cells)
+                    .all(|cell| grid.is_walkable(*cell))
         };
-        let [done, flags @ ..] = bytes else {
-            return fault();
+        let read = postcard::from_bytes::<StepProgress>(bytes).ok();
+        let Some(progress) = read.filter(is_of_this) else {
+            return Err(WorldError::Snapshot(
+                "what is done of its instruction is of another one".to_owned(),
+            ));
         };
-        let done = usize::from(*done);
-        let conditions = self
-            .steps
-            .get(done)
-            .map_or(0, |own| own.step.conditions.len());
-        let sizes = [0, conditions];
-        match flags {
-            [is_broken, met @ ..]
-                if done <= self.steps.len()
-                    && sizes.contains(&met.len())
-                    && flags.iter().all(|flag| *flag <= 1) =>
-            {
-                self.progress = StepProgress {
-                    done,
-                    met: met.iter().map(|met| *met == 1).collect(),
-                    is_broken: *is_broken == 1,
-                };
-                self.advance(world, agent, None);
-                Ok(())
-            }
-            _ => fault(),
+        let moved = progress.moved.clone();
+        self.progress = progress;
+        self.advance(world, agent, None);
+        if let Some(moved) = moved {
+            self.lead_to_moved(moved);
         }
+        Ok(())
     }
+}
+
+/// How fast a thing moves, m/s.
+fn speed_m_s(world: &World, object: ObjectId) -> f32 {
+    let part = world.house().objects[object].first_part;
+    world.state().part_velocity[part].linear.length()
 }
 
 /// The walkable way from the end of each leg to the end of the last one, m: from the nearest cell of one goal to the next goal.

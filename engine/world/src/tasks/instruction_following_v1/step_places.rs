@@ -16,7 +16,7 @@ use std::sync::Arc;
 /// Cells from which a thing must be reached: from fewer, a view that turns by steps may miss it everywhere.
 const LEAST_CELLS: usize = 6;
 /// Distance from a room's borders at which a thing is dropped in it, m: it falls an arm's length before the agent.
-const DROP_M: f32 = 0.8;
+pub(super) const DROP_M: f32 = 0.8;
 /// Least rise of a step of stairs, and height from which ground is that of another storey, m.
 const STEP_M: f32 = 0.1;
 const STOREY_M: f32 = 2.0;
@@ -66,7 +66,7 @@ fn steps_near(ground: &LargestIslandIndex<'_>, cells: &[NavCell], floor_y: f32) 
 }
 
 /// Where a hand reaches a thing as it lies now, for an agent that looks at it.
-pub(super) fn reach_goal(
+fn reach_goal(
     world: &World,
     agent: AgentId,
     ground: &LargestIslandIndex<'_>,
@@ -77,8 +77,15 @@ pub(super) fn reach_goal(
         .agents
         .get(agent)
         .map_or(0.0, |own| own.body.reach_m);
-    let cells = cells_in_reach(world, agent, ground, object);
-    goal(cells, InstructionGoal::objects(vec![object], reach_m))
+    Arc::new(NavigationGoal {
+        cells: cells_in_reach(world, agent, ground, object),
+        success: SuccessRule::Fulfilled(InstructionGoal::objects(vec![object], reach_m)),
+        told: EpisodeGoal {
+            position: Some(world.house().object_bounds(world.state(), object).center()),
+            ..EpisodeGoal::default()
+        },
+        instruction: None,
+    })
 }
 
 /// A finder of places in a house at its start.

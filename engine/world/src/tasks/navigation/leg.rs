@@ -8,15 +8,26 @@ use crate::expert::{
 };
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
-use dwell_scene::space::forward_from_yaw;
+use dwell_scene::space::{forward_from_yaw, yaw_from_forward};
 use dwell_scene::{AgentId, AgentState, ObjectId};
 use glam::Vec3;
+use std::f32::consts::{FRAC_PI_2, PI, TAU};
 use std::sync::Arc;
 
 /// Distance from a place where the expert looked in vain within which goals are not tried again, m.
 pub(in crate::tasks) const ELSEWHERE_M: f32 = 0.3;
 /// The same where the expert's view, which turns by steps, missed a thing that is small from there.
 pub(in crate::tasks) const BESIDE_M: f32 = 0.1;
+
+/// How far it steps back from places that it tried in vain, m, and to which sides of where it looks, rad.
+const STEP_BACK_M: std::ops::Range<f32> = 0.4..0.8;
+const SIDES: [f32; 3] = [FRAC_PI_2, -FRAC_PI_2, PI];
+
+/// Distance to which what is carried is kept from everything, m, and the highest view to which it is raised, rad.
+const HAND_MARGIN_M: f32 = 0.01;
+const HIGHEST_RAD: f32 = 0.5;
+/// Directions around a place in which it looks for room for what it picks up.
+const DIRECTIONS: u16 = 12;
 
 /// How the expert first turns on a way.
 #[derive(Clone, Copy, Debug, PartialEq)]
@@ -27,6 +38,14 @@ enum FirstTurn {
     Farther,
     /// To this side until it is ahead.
     Towards(DiscreteAction),
+}
+
+/// Where the expert walks to.
+#[derive(Clone, Copy, Debug, PartialEq)]
+enum Destination {
+    Goals,
+    /// Some steps from them, to come to them from another side.
+    Aside,
 }
 
 /// The way to a goal.
@@ -43,8 +62,11 @@ pub(in crate::tasks) struct Leg {
     is_raised: bool,
     /// The side to which the expert first turns with what it carries, where that is not the nearer one.
     first_turn: FirstTurn,
+    /// True once only those goals are left where it has room to turn with what it picks up.
+    has_room_to_turn: bool,
     /// True once only those goals are left from which steps of the view meet the thing.
     is_narrowed: bool,
+    destination: Destination,
     stride: StepSizes,
 }
 
@@ -61,11 +83,18 @@ impl Leg {
             expert_cells: goal.cells.clone(),
             is_raised: false,
             first_turn: FirstTurn::Nearer,
+            has_room_to_turn: false,
             is_narrowed: false,
+            destination: Destination::Goals,
             guide,
             goal,
             stride,
         }
+    }
+
+    /// The agent's steps and turns.
+    pub(in crate::tasks) fn stride(&self) -> StepSizes {
+        self.stride
     }
 
     /// The straight distance of a cell to the nearest goal, m.
@@ -99,12 +128,16 @@ impl Leg {
     fn retain_goals(&mut self, wanted: impl Fn(Vec3) -> bool) -> bool {
         let grid = self.expert_path.grid().clone();
         let cells = self.expert_cells.iter().copied();
-        let kept: Vec<NavCell> = cells.filter(|cell| wanted(grid.position(*cell))).collect();
+        self.keep_goals(cells.filter(|cell| wanted(grid.position(*cell))).collect())
+    }
+
+    /// Leads to these of its goals alone from now on; `false` when they are none or all.
+    fn keep_goals(&mut self, kept: Vec<NavCell>) -> bool {
         if kept.is_empty() || kept.len() == self.expert_cells.len() {
             return false;
         }
         self.expert_cells = kept;
-        let id = self.expert_path.agent();
+        let (id, grid) = (self.guide.agent(), self.guide.grid().clone());
         self.expert_path = ShortestPathFollower::new(id, grid, &self.expert_cells, self.stride);
         true
     }
@@ -113,6 +146,35 @@ impl Leg {
     pub(in crate::tasks) fn restore_all_goals(&mut self) {
         self.expert_cells.clone_from(&self.goal.cells);
         self.expert_path = self.guide.clone();
+        self.is_narrowed = false;
+        self.destination = Destination::Goals;
+    }
+
+    /// Leads some steps away, to another side with each `round`, and then to all goals again: who comes from elsewhere stands elsewhere
+    /// in a cell. `false` where there is nowhere to step to.
+    pub(in crate::tasks) fn step_back(&mut self, world: &World, round: u32) -> bool {
+        let Some(agent) = world.state().agents.get(self.guide.agent()) else {
+            return false;
+        };
+        let grid = self.guide.grid();
+        let island = |cell: NavCell| grid.island(cell);
+        let here = grid.nearest(agent.position, 0.6).and_then(island);
+        let away = |cell: &NavCell| grid.position(*cell) - agent.position;
+        let is_near = |cell: &NavCell| STEP_BACK_M.contains(&away(cell).length());
+        let near = grid.walkable().filter(is_near);
+        let near: Vec<NavCell> = near.filter(|cell| island(*cell) == here).collect();
+        let side = forward_from_yaw(agent.yaw_rad + SIDES[round as usize % SIDES.len()]);
+        let beside = near.iter().copied();
+        let beside = beside.filter(|cell| away(cell).normalize_or_zero().dot(side) > 0.7);
+        let beside: Vec<NavCell> = beside.collect();
+        let cells = if beside.is_empty() { near } else { beside };
+        if cells.is_empty() {
+            return false;
+        }
+        self.destination = Destination::Aside;
+        let (id, grid) = (self.guide.agent(), grid.clone());
+        self.expert_path = ShortestPathFollower::new(id, grid, &cells, self.stride);
+        true
     }
 
     /// Returns whether the agent has reached the goal; `distance_m`: how far it is from there.
@@ -138,26 +200,73 @@ impl Leg {
 
     /// The expert's next step on the way; `None` where it ends. What is in the hand is raised first, over what stands on tables.
     pub(in crate::tasks) fn walk(&mut self, world: &World) -> Option<DiscreteAction> {
-        let step = self.expert_path.next_action(world)?;
+        let mut step = self.expert_path.next_action(world);
+        if step.is_none() && self.destination == Destination::Aside {
+            self.restore_all_goals();
+            step = self.expert_path.next_action(world);
+        }
+        let step = step?;
         let agent = world.state().agents.get(self.expert_path.agent())?;
         let looks_down = agent.pitch_rad < -0.5 * self.stride.look_deg.to_radians();
         self.is_raised |= agent.holding.is_none() || !looks_down;
-        Some(if self.is_raised {
-            self.turned(step)
-        } else {
-            DiscreteAction::LookUp
-        })
+        if !self.is_raised {
+            return Some(DiscreteAction::LookUp);
+        }
+        let agent = *agent;
+        let step = self.turned(step);
+        Some(self.keep_hand_clear(world, &agent, step))
+    }
+
+    /// A step, or one that keeps what is in the hand from where that step would bring it against something: it is raised, or
+    /// carried round the other way.
+    fn keep_hand_clear(
+        &mut self,
+        world: &World,
+        agent: &AgentState,
+        step: DiscreteAction,
+    ) -> DiscreteAction {
+        let id = self.guide.agent();
+        let has_room =
+            |holder: &AgentState| world.physics.has_room_in_hand(id, holder, HAND_MARGIN_M);
+        let is_on_the_way = matches!(self.first_turn, FirstTurn::Towards(_));
+        if agent.holding.is_none() || is_on_the_way || !has_room(agent) {
+            return step;
+        }
+        // How far to turn to which side, the nearer one first; none of what is no turn.
+        let turn_rad = self.stride.turn_deg.to_radians();
+        let nearer_rad = self.expert_path.turn_to_aim_rad(agent).abs();
+        let turns = |angle_rad: f32| (angle_rad / turn_rad).round().max(1.0) as u32;
+        let sides = match other_side(step) {
+            None => vec![(step, 1)],
+            Some(other) => vec![(step, turns(nearer_rad)), (other, turns(TAU - nearer_rad))],
+        };
+        let is_free = |from: &AgentState, (side, count): (DiscreteAction, u32)| {
+            let mut holder = *from;
+            (0..count).all(|_| {
+                holder = self.stride.after(&holder, side);
+                has_room(&holder)
+            })
+        };
+        let free_side = |from: &AgentState| sides.iter().find(|side| is_free(from, **side));
+        if let Some((side, _)) = free_side(agent) {
+            if *side != step {
+                self.first_turn = FirstTurn::Towards(*side);
+            }
+            return *side;
+        }
+        let raised = self.stride.after(agent, DiscreteAction::LookUp);
+        let can_raise = raised.pitch_rad < HIGHEST_RAD && has_room(&raised);
+        if can_raise && free_side(&raised).is_some() {
+            return DiscreteAction::LookUp;
+        }
+        step
     }
 
     /// A step of the way, or the turn to the other side.
     fn turned(&mut self, step: DiscreteAction) -> DiscreteAction {
-        let other = match step {
-            DiscreteAction::TurnLeft => DiscreteAction::TurnRight,
-            DiscreteAction::TurnRight => DiscreteAction::TurnLeft,
-            _ => {
-                self.first_turn = FirstTurn::Nearer;
-                return step;
-            }
+        let Some(other) = other_side(step) else {
+            self.first_turn = FirstTurn::Nearer;
+            return step;
         };
         if self.first_turn == FirstTurn::Farther {
             self.first_turn = FirstTurn::Towards(other);
@@ -196,7 +305,7 @@ impl Leg {
         }
     }
 
-    /// Leads to those goals alone from whose middles steps of the view meet a thing, the first time that it was missed; `false`
+    /// Leads to those goals alone from which steps of the view meet a thing most surely, the first time that it was missed; `false`
     /// later, and where these are none or all.
     pub(in crate::tasks) fn keep_goals_that_see(
         &mut self,
@@ -206,12 +315,69 @@ impl Leg {
         let Some(agent) = world.state().agents.get(self.guide.agent()).copied() else {
             return false;
         };
-        let stride = self.stride;
-        !std::mem::replace(&mut self.is_narrowed, true)
-            && self.retain_goals(|position| {
-                let there = AgentState { position, ..agent };
-                look_at(world, &there, at, &[], &stride) != LookAction::Missed
-            })
+        if std::mem::replace(&mut self.is_narrowed, true) {
+            return false;
+        }
+        let (grid, stride) = (self.guide.grid(), self.stride);
+        // Of five points of a cell, where it may come to stand, from how many.
+        let beside_m = 0.25 * grid.config().cell_m;
+        let points = [
+            (0.0, 0.0),
+            (-1.0, -1.0),
+            (1.0, -1.0),
+            (-1.0, 1.0),
+            (1.0, 1.0),
+        ];
+        let points = points.map(|(x, z)| beside_m * Vec3::new(x, 0.0, z));
+        let seen_from = |cell: &NavCell| {
+            let from = points.iter().filter(|beside| {
+                let position = grid.position(*cell) + **beside;
+                look_at(world, &AgentState { position, ..agent }, at, &[], &stride)
+                    != LookAction::Missed
+            });
+            from.count()
+        };
+        let counts: Vec<usize> = self.expert_cells.iter().map(seen_from).collect();
+        let most = counts.iter().copied().max().unwrap_or(0);
+        if most == 0 {
+            return false;
+        }
+        let cells = self.expert_cells.iter().zip(&counts);
+        let kept = cells.filter(|(_, count)| 2 * **count > most);
+        let kept: Vec<NavCell> = kept.map(|(cell, _)| *cell).collect();
+        self.keep_goals(kept)
+    }
+
+    /// Leads to those goals alone at which there is most room around to turn with a thing that is picked up there; looks for them the
+    /// first time that it is asked.
+    pub(in crate::tasks) fn keep_goals_to_turn_at(&mut self, world: &World, object: ObjectId) {
+        if std::mem::replace(&mut self.has_room_to_turn, true) {
+            return;
+        }
+        let id = self.guide.agent();
+        let Some(agent) = world.state().agents.get(id) else {
+            return;
+        };
+        let grid = self.guide.grid();
+        let middle = world.house().object_bounds(world.state(), object).center();
+        let part = world.house().objects[object].first_part;
+        let room_at = |cell: &NavCell| {
+            let position = grid.position(*cell);
+            let holder = AgentState {
+                position,
+                yaw_rad: yaw_from_forward(middle - position),
+                pitch_rad: 0.0,
+                ..*agent
+            };
+            let physics = &world.physics;
+            physics.directions_with_room(part, (id, &holder), DIRECTIONS, HAND_MARGIN_M)
+        };
+        let rooms: Vec<usize> = self.expert_cells.iter().map(room_at).collect();
+        let most = rooms.iter().copied().max().unwrap_or(0);
+        let cells = self.expert_cells.iter().zip(&rooms);
+        let kept = cells.filter(|(_, room)| 4 * **room >= 3 * most);
+        let kept = kept.map(|(cell, _)| *cell).collect();
+        self.keep_goals(kept);
     }
 
     /// What brings the middle of the view onto the level surface at a point, at most `around_m` from it.
@@ -259,6 +425,15 @@ impl Leg {
     /// The expert's next step to open a thing in front of which it stands.
     pub(in crate::tasks) fn open(&mut self, world: &World, object: ObjectId) -> DiscreteAction {
         self.expert_path.action_to_open(world, object)
+    }
+}
+
+/// The turn to the other side; `None` of what is no turn.
+fn other_side(step: DiscreteAction) -> Option<DiscreteAction> {
+    match step {
+        DiscreteAction::TurnLeft => Some(DiscreteAction::TurnRight),
+        DiscreteAction::TurnRight => Some(DiscreteAction::TurnLeft),
+        _ => None,
     }
 }
 

@@ -85,6 +85,7 @@ impl OngoingManipulation {
                     // It was just out of reach, or something was in the way.
                     return self.refused(world);
                 }
+                self.leg.keep_goals_to_turn_at(world, object);
                 if let Some(step) = self.leg.walk(world) {
                     return Some(step);
                 }
@@ -209,13 +210,9 @@ impl OngoingManipulation {
         if self.leg.exclude_goals_within(world, radius_m) {
             return Some(DiscreteAction::Wait);
         }
-        // It stands elsewhere in a cell when it comes again.
-        if self.rounds < ROUNDS {
+        if self.rounds < ROUNDS && self.leg.step_back(world, self.rounds) {
             self.rounds += 1;
-            self.leg.restore_all_goals();
-            if self.leg.exclude_goals_within(world, radius_m) {
-                return Some(DiscreteAction::Wait);
-            }
+            return Some(DiscreteAction::Wait);
         }
         None
     }

@@ -22,6 +22,12 @@ const CARRYING: u32 = 500;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
+/// It looks anew for a thing that it goes to take once this lies so far from where it lay, m; while it moves faster than this, m/s,
+/// it waits for it, for so many control steps.
+const MOVED_M: f32 = 0.1;
+const AT_REST_M_S: f32 = 0.05;
+const SETTLING: u32 = 60;
+
 /// Around the box of furniture what stands in it may reach out, m.
 const NEAR_M: f32 = 0.05;
 
@@ -90,8 +96,11 @@ pub(in crate::tasks) struct RestoreExpert {
     /// True if what is held is put where the view has a level surface, and not where it belongs.
     by_view: bool,
     carrier: Option<OngoingManipulation>,
-    /// Control steps for which it has been carrying.
+    /// The middle of the box of what it goes to take, as it lay when it began.
+    lies_at: Vec3,
+    /// Control steps for which it has been carrying, and waiting for things to lie still.
     carrying: u32,
+    settling: u32,
     doors: BlockedDoors,
     takes: BTreeMap<ObjectId, u32>,
     /// What it brings back after all else.
@@ -115,7 +124,9 @@ impl RestoreExpert {
             furniture,
             by_view: false,
             carrier: None,
+            lies_at: Vec3::ZERO,
             carrying: 0,
+            settling: 0,
             doors: BlockedDoors::new((agent, grid, stride)),
             takes: BTreeMap::new(),
             postponed: BTreeSet::new(),
@@ -178,7 +189,11 @@ impl RestoreExpert {
         let is_misplaced = |object: ObjectId| misplaced.iter().any(|one| one.object() == object);
         if let Some(carrier) = &self.carrier {
             let is_over = match carrier.errand {
-                Manipulation::Take(object) => held == Some(object) || !is_misplaced(object),
+                Manipulation::Take(object) => {
+                    held == Some(object)
+                        || !is_misplaced(object)
+                        || middle(world, object).distance(self.lies_at) > MOVED_M
+                }
                 Manipulation::Put(object, _) => held != Some(object),
                 Manipulation::Open(object) | Manipulation::Close(object) => !is_misplaced(object),
             };
@@ -198,6 +213,9 @@ impl RestoreExpert {
                 }
                 self.carrier = None;
             }
+        }
+        if self.carrier.is_none() && self.waits_for_rest(world, misplaced) {
+            return DiscreteAction::Wait;
         }
         // Each round begins an errand or gives a thing up.
         let spare: usize = self.spare_places.values().map(Vec::len).sum();
@@ -233,6 +251,21 @@ impl RestoreExpert {
             return DiscreteAction::Drop;
         }
         DiscreteAction::Stop
+    }
+
+    /// Counts the steps for which something that it would take still moves; returns whether it waits for it.
+    fn waits_for_rest(&mut self, world: &World, misplaced: &[Misplacement]) -> bool {
+        let state = world.state();
+        let is_held = |object: ObjectId| state.agents.iter().any(|own| own.holding == Some(object));
+        let moves = misplaced.iter().any(|one| {
+            let part = world.house().objects[one.object()].first_part;
+            let speed_m_s = state.part_velocity[part].linear.length();
+            matches!(one, Misplacement::Thing(_))
+                && !is_held(one.object())
+                && speed_m_s > AT_REST_M_S
+        });
+        self.settling = if moves { self.settling + 1 } else { 0 };
+        moves && self.settling < SETTLING
     }
 
     /// Returns whether furniture that is to be closed has something in it that belongs elsewhere, or is missing something.
@@ -333,8 +366,14 @@ impl RestoreExpert {
         }
         let (_, errand, cells) = best?;
         if let Manipulation::Take(object) = errand {
+            self.lies_at = middle(world, object);
             *self.takes.entry(object).or_default() += 1;
         }
         Some(OngoingManipulation::new(errand, cells, setup))
     }
+}
+
+/// The middle of the box around a thing, m.
+fn middle(world: &World, object: ObjectId) -> Vec3 {
+    world.house().object_bounds(world.state(), object).center()
 }
