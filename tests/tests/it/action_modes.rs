@@ -5,6 +5,7 @@ use dwell::{
     StepAction,
 };
 use dwell_physics::AgentPlacement;
+use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::parallel::Threads;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, EntityId, ObjectId};
@@ -195,6 +196,75 @@ fn hands_take_what_places_of_pictures_and_ids_mean() {
     let outside = Some(on(ActionTarget::Picture([1.2, 0.0])));
     let error = env.step(&[outside]).unwrap_err().to_string();
     assert!(error.contains("pixel is [1.2, 0.0]"), "{error}");
+}
+
+/// What is in the hand is looked past: with it before its eyes an agent switches the lamp that it looks at.
+#[test]
+fn a_full_hand_does_not_hide_what_is_looked_at() {
+    let mut env = env("builtin:apartment", "Free");
+    let house = env.world().house().clone();
+    let me = AgentId(0);
+    let held: Vec<ObjectId> = (house.objects.ids())
+        .filter(|id| house.objects[*id].pickable)
+        .filter(|id| {
+            let size = house.object_bounds(env.world().state(), *id).size();
+            size.y > 0.2 && size.max_element() < 0.5
+        })
+        .collect();
+    let lamps = house.objects.ids();
+    let lamps: Vec<ObjectId> = lamps
+        .filter(|id| house.objects[*id].switch.is_some())
+        .collect();
+    let start = env.snapshot().unwrap();
+    let (mut hidden, mut switched) = (0, 0);
+    for thing in held.into_iter().take(3) {
+        for side in 0..12 {
+            env.restore(&start).unwrap();
+            stand_before(&mut env, thing, 0.8, 0.52 * side as f32);
+            env.step(&[Some(DiscreteAction::Pick)]).unwrap();
+            if env.world().state().agents[me].holding == Some(thing) {
+                break;
+            }
+        }
+        if env.world().state().agents[me].holding != Some(thing) {
+            continue;
+        }
+        let carrying = env.snapshot().unwrap();
+        for (lamp, side) in lamps
+            .iter()
+            .flat_map(|lamp| (0..12).map(move |side| (*lamp, side)))
+        {
+            if hidden >= 6 && switched >= 1 {
+                return;
+            }
+            env.restore(&carrying).unwrap();
+            stand_before(&mut env, lamp, 1.0, 0.52 * side as f32);
+            let world = env.world();
+            let agent = &world.state().agents[me];
+            let eye = agent.world_from_eye();
+            let ray = Ray::new(eye.position, eye.transform_vector(Vec3::NEG_Z));
+            let hit = world.rays().closest(&ray, RayMask::EYE);
+            let entity = hit.map(|hit| world.rays().surface(&hit).entity);
+            let before_eyes = entity == Some(house.entity_of_object(thing));
+            if agent.holding != Some(thing)
+                || !before_eyes
+                || world.object_in_view_centre(me) != Some(lamp)
+            {
+                continue;
+            }
+            hidden += 1;
+            let info = env.step(&[Some(DiscreteAction::Toggle)]).unwrap();
+            switched += u32::from(info[0].action_success);
+            if !info[0].action_success {
+                assert!(
+                    !info[0].action_error.contains("hold"),
+                    "{}",
+                    info[0].action_error
+                );
+            }
+        }
+    }
+    panic!("{switched} of {hidden} were switched");
 }
 
 /// Without a hand to open them, doors stand open when an episode begins, and the expert arrives without one.

@@ -376,13 +376,14 @@ fn verdicts_are_those_of_the_words() {
     };
     let mut kinds = BTreeSet::new();
     let (mut accepted, mut rejected, mut played) = (0, 0, 0);
-    for house in 0..houses {
-        let (house, _) = dwell_houses::open(&format!("seed:{}", 700 + house)).unwrap();
+    for number in 0..houses {
+        let (house, _) = dwell_houses::open(&format!("seed:{}", 700 + number)).unwrap();
         let mut env = env_in(
             house,
             json!({"max_sequence_steps": 3, "max_distance_m": 15.0}),
         );
-        for seed in 0..episodes {
+        // Others in each house: the form of an instruction is drawn by the seed.
+        for seed in number * episodes..(number + 1) * episodes {
             let key = RandomKey::root(seed).child("perturbed");
             let (plan, success, judged) =
                 play(&mut env, seed, |_, env| env.expert_action(0).unwrap());
@@ -486,6 +487,57 @@ fn a_restored_instruction_knows_what_is_done() {
         checked += 1;
     }
     assert!(checked >= 1);
+}
+
+/// What falls on the way is fetched from where it lies, also by an episode that is restored there: it is rewarded as the one that goes on.
+#[test]
+fn what_was_let_go_on_the_way_is_fetched_from_there() {
+    let (house, _) = dwell_houses::open("builtin:apartment").unwrap();
+    let settings = json!({"forms": ["single"], "kinds": ["bring"]});
+    let mut env = env_in(house.clone(), settings.clone());
+    let mut other = env_in(house, settings);
+    let (mut played, mut fetched) = (0, 0);
+    for seed in 0..6 {
+        env.reset(seed).unwrap();
+        let mut held = 0;
+        let mut is_over = false;
+        while held < 12 && !is_over {
+            let action = env.expert_action(0).unwrap();
+            is_over = env.step(&[Some(action)]).unwrap()[0].result.terminated;
+            held += u32::from(env.world().state().agents[ME].holding.is_some());
+        }
+        if is_over {
+            continue;
+        }
+        // Far enough from where it lay that the way to there is another one.
+        let action = |action: DiscreteAction| [Some(action)];
+        env.step(&action(DiscreteAction::Drop)).unwrap();
+        for _ in 0..30 {
+            env.step(&action(DiscreteAction::Wait)).unwrap();
+        }
+        let saved = env.snapshot().unwrap();
+        other.reset(100 + seed).unwrap();
+        other.restore(&saved).unwrap();
+        played += 1;
+        loop {
+            let next = env.expert_action(0).unwrap();
+            let info = env.step(&[Some(next)]).unwrap().swap_remove(0);
+            let again = other.step(&[Some(next)]).unwrap().swap_remove(0);
+            assert_eq!(
+                (info.result.reward.to_bits(), env.world().hash()),
+                (again.result.reward.to_bits(), other.world().hash()),
+                "{seed}"
+            );
+            if info.result.terminated {
+                fetched += u32::from(info.result.success);
+                break;
+            }
+        }
+    }
+    assert!(
+        played >= 4 && fetched + 1 >= played,
+        "{fetched} of {played}"
+    );
 }
 
 #[test]

@@ -404,6 +404,42 @@ fn the_expert_walks_with_the_strides_of_its_environment() {
     assert!(fulfilled >= 4, "{fulfilled} of 6");
 }
 
+/// On straight ground the expert walks straight: between two turns lie several steps.
+#[test]
+fn the_expert_does_not_turn_to_and_fro() {
+    let config = dwell::EnvConfig {
+        task: "PointNav".to_owned(),
+        sensors: Some(Vec::new()),
+        ..dwell::EnvConfig::default()
+    };
+    let mut env = dwell::Env::new(dwell_tests::apartment(), &config).unwrap();
+    // A step forward between a turn to one side and a turn back.
+    let (mut steps, mut zigzags) = (0, 0);
+    for seed in 0..10 {
+        env.reset(seed).unwrap();
+        let mut last = [DiscreteAction::Wait; 2];
+        loop {
+            let action = env.expert_action(0).unwrap();
+            let turns = [DiscreteAction::TurnLeft, DiscreteAction::TurnRight];
+            steps += u32::from(action == DiscreteAction::MoveForward);
+            zigzags += u32::from(
+                last[1] == DiscreteAction::MoveForward
+                    && turns.contains(&last[0])
+                    && turns.contains(&action)
+                    && last[0] != action,
+            );
+            last = [last[1], action];
+            if env.step(&[Some(action)]).unwrap()[0].result.terminated {
+                break;
+            }
+        }
+    }
+    assert!(
+        steps > 300 && zigzags * 20 < steps,
+        "{zigzags} of {steps} steps"
+    );
+}
+
 /// Worlds of one config share their start; whatever one does, another begins as the first did, and a reset leads back.
 #[test]
 fn worlds_of_one_config_begin_alike_and_go_back_to_it() {

@@ -26,7 +26,7 @@ const AIM_AHEAD_M: f32 = 2.5;
 /// fro between the two directions beside it with every step.
 const AHEAD: f32 = 0.51;
 const WALKING: f32 = 0.75;
-const FAR_M: f32 = 0.5;
+const FAR_M: f32 = 0.2;
 /// A door is open enough to pass from this share on.
 const PASSABLE: f32 = 0.8;
 
