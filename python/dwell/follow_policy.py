@@ -44,6 +44,8 @@ SENSORS: dict[str, dict[str, Any]] = {
     "compass": {},
     "lidar": {"beams": 72, "elevations_deg": [-35.0, -18.0, -8.0, 0.0, 15.0, 35.0]},
 }
+#: What may be named, as the task draws it by default.
+_SOUNDS = ("radio", "vacuum_cleaner", "kettle", "television", "alarm")
 #: Steps after which it weighs what it heard, and after which it thinks again where to go.
 _WEIGH, _THINK = 3, 4
 #: At first it stands and turns for so many steps.
@@ -84,7 +86,7 @@ class FollowByEars:
     def __init__(
         self,
         *,
-        sounds: tuple[str, ...] = ("radio", "phone", "kettle", "television", "alarm"),
+        sounds: tuple[str, ...] = _SOUNDS,
         rate_hz: int = 16_000,
         turn_deg: float = 9.0,
     ) -> None:

@@ -64,13 +64,6 @@ impl StepCondition {
         let ConditionContext {
             scene, rays, agent, ..
         } = *view;
-        let is = |predicate: &str, arguments: &[Term]| {
-            let found = predicates::find(predicate);
-            found.is_ok_and(|found| found.holds(scene, arguments, None) == Truth::True)
-        };
-        let left = |object: ObjectId, predicate: &str, place: Term| {
-            scene.holder(object).is_none() && is(predicate, &[Term::Object(object), place])
-        };
         match self {
             Self::AgentIn(room) => scene.room_of_agent(agent) == Some(room),
             Self::Found(object) => Self::find_object_goal(object).is_reached(scene, rays, agent),
@@ -89,6 +82,25 @@ impl StepCondition {
                 let holder = scene.state.agents.get(agent);
                 holder.is_some_and(|holder| holder.holding == Some(object))
             }
+            _ => self.holds_of_things(scene),
+        }
+    }
+
+    /// Returns whether it is so of things alone, whatever an agent does; `false` for conditions that are about an agent.
+    pub fn holds_of_things(self, scene: &SemanticScene<'_>) -> bool {
+        let is = |predicate: &str, arguments: &[Term]| {
+            let found = predicates::find(predicate);
+            found.is_ok_and(|found| found.holds(scene, arguments, None) == Truth::True)
+        };
+        let left = |object: ObjectId, predicate: &str, place: Term| {
+            scene.holder(object).is_none() && is(predicate, &[Term::Object(object), place])
+        };
+        match self {
+            Self::AgentIn(_)
+            | Self::Found(_)
+            | Self::Faced(_)
+            | Self::PointedAt(_)
+            | Self::Held(_) => false,
             Self::Open(object) => is("open", &[Term::Object(object)]),
             Self::Closed(object) => is("closed", &[Term::Object(object)]),
             Self::SwitchedOn(object) => is("switched_on", &[Term::Object(object)]),

@@ -12,6 +12,7 @@ mod hide_and_seek;
 mod image_nav;
 mod instruction_following;
 mod instruction_following_v1;
+mod moved_things;
 mod navigation;
 mod object_nav;
 mod others;

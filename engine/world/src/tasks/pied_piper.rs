@@ -14,19 +14,20 @@ use crate::episode::{Episode, EpisodeGoal, StepResult, TaskMeasure};
 use crate::error::WorldError;
 use crate::metrics::NavigationMetrics;
 use crate::schema;
-use crate::sound::SoundPlace;
+use crate::sound::{SoundName, SoundPlace};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
 use dwell_scene::{AgentId, Pose};
 use dwell_semantics::vocabulary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
+use std::collections::BTreeSet;
 
 const NAME: &str = "PiedPiper";
 /// The instruction of those who lead.
 const PIPER_INSTRUCTION: &str = "Go.";
-/// Sounds that have a name of one word in the vocabulary.
-const SOUNDS: [&str; 5] = ["radio", "phone", "kettle", "television", "alarm"];
+/// Sounds that have a name in the vocabulary and no pause of more than a second or two.
+const SOUNDS: [&str; 5] = ["radio", "vacuum_cleaner", "kettle", "television", "alarm"];
 /// A leader walks in one of so many steps, so that others keep up.
 const WALKS_EVERY: u64 = 2;
 /// Distance at which the scripted follower waits, m.
@@ -62,7 +63,8 @@ pub(super) const KIND: TaskKind = TaskKind {
 struct PiedPiperSettings {
     /// The numbers of the agents who lead, each with a sound of its own; default all but agent 0. All others follow.
     pipers: Option<Vec<u32>>,
-    /// Signals to draw from, as `dwell.sounds.signals` names them, at least one for each who leads; default five.
+    /// Signals to draw from, as `dwell.sounds.signals` names them, at least one for each who leads; default five. Those that a thing
+    /// of the house makes at the start are drawn last.
     sounds: Vec<String>,
     /// Level at 1 m, dB SPL; default the typical level of each signal.
     level_db: Option<f32>,
@@ -158,6 +160,17 @@ fn instruction(sound: &str) -> Result<(String, Vec<i32>), WorldError> {
     Ok((text, tokens))
 }
 
+/// The signals that things of the house make.
+fn sounds_of_things(world: &World) -> BTreeSet<String> {
+    let own = world.sounds().into_iter();
+    let own = own.filter(|sound| sound.on && sound.object.is_some());
+    own.filter_map(|own| match own.sound {
+        SoundName::Signal(name) => Some(name),
+        SoundName::File(_) => None,
+    })
+    .collect()
+}
+
 fn build(value: &serde_json::Value, setup: TaskSetup) -> Result<Box<dyn Task>, WorldError> {
     let settings: PiedPiperSettings = crate::parse_settings::parse_task_settings(value)?;
     settings.check()?;
@@ -232,6 +245,9 @@ impl Task for PiedPiperTask {
         let shared = world.episode_key().child("pied_piper");
         let mut sounds = self.settings.sounds.clone();
         shared.child("sounds").stream().shuffle(&mut sounds);
+        // "The radio" is the one who leads, and not a thing that plays the same, while there are other sounds.
+        let of_things = sounds_of_things(world);
+        sounds.sort_by_key(|name| of_things.contains(name));
         let own_place = leaders.iter().position(|leader| *leader == agent);
         let (target, text, tokens) = if let Some(place) = own_place {
             let place_of_sound = (SoundPlace::Agent(agent), self.settings.level_db, true);

@@ -173,7 +173,7 @@ impl EmbodiedQa {
     fn not_playable(&self, world: &World) -> WorldError {
         let [least, most] = self.rules.distance_m;
         let why = if self.offers.is_empty() {
-            "it has nothing to ask about of the kinds that are asked for: no thing or room that has a name of its own and that one can go to and see"
+            "it has nothing to ask about of the kinds that are asked for: no thing or room that has a name of its own and that one can go to and see, or of yes and no only one"
                 .to_owned()
         } else {
             format!(
@@ -204,6 +204,11 @@ impl Task for EmbodiedQa {
             let alike = of_kind.entry(offer.asked.answer).or_default();
             alike.push(Arc::new(offer));
         }
+        // Who asks whether something is so where the answer is always the same asks nothing.
+        let is_open = |by_answer: &OffersByAnswer| {
+            by_answer.len() > 1 || !["yes", "no"].iter().any(|own| by_answer.contains_key(own))
+        };
+        self.offers.retain(|_, by_answer| is_open(by_answer));
         Ok(())
     }
 

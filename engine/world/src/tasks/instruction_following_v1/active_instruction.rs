@@ -6,6 +6,7 @@ use crate::actions::{DiscreteAction, StepSizes};
 use crate::error::WorldError;
 use crate::expert::{BlockedDoors, LookAction, LookTarget, point_in_view_centre};
 use crate::tasks::goal_cells::LargestIslandIndex;
+use crate::tasks::moved_things::{RestState, box_centre, rest_state, was_moved};
 use crate::tasks::navigation::{BESIDE_M, ELSEWHERE_M, Leg, NavigationGoal, cells_in_reach};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -22,9 +23,6 @@ const PATIENCE: u32 = 60;
 const ROUNDS: u32 = 3;
 /// Control steps for which it keeps opening a thing.
 const OPENING: u32 = 240;
-/// A thing that is to be picked up is looked for anew once it is so far from where it lay, m, and slower than this, m/s.
-const MOVED_M: f32 = 0.1;
-const AT_REST_M_S: f32 = 0.05;
 
 /// The place of a leg: its step, target and number.
 #[derive(Clone, Copy, Debug, Default, PartialEq)]
@@ -218,20 +216,14 @@ impl ActiveInstruction {
         let LegEndAction::Hand(DiscreteAction::Pick, object) = planned.end else {
             return;
         };
-        let (house, state) = (world.house(), world.state());
-        let is_held = (state.agents.iter()).any(|own| own.holding == Some(object));
-        let speed_m_s = state.part_velocity[house.objects[object].first_part]
-            .linear
-            .length();
-        if is_held || speed_m_s > AT_REST_M_S {
-            return;
-        }
-        let lies_at = house.object_bounds(state, object).center();
         let known = self.progress.moved.as_ref().map(|moved| moved.lies_at);
         let known = known.or(planned.goal.told.position);
-        if known.is_some_and(|known| known.distance(lies_at) < MOVED_M) {
+        if rest_state(world, object) != RestState::AtRest
+            || known.is_some_and(|known| !was_moved(world, object, known))
+        {
             return;
         }
+        let lies_at = box_centre(world, object);
         let ground = LargestIslandIndex::of(self.leg.guide.grid());
         let cells = cells_in_reach(world, agent, &ground, object);
         self.lead_to_moved(MovedThing { lies_at, cells });
@@ -360,7 +352,7 @@ impl ActiveInstruction {
     /// Ends once what it brought lies still.
     fn wait_for_rest(&mut self, world: &World) -> DiscreteAction {
         self.busy += 1;
-        let moves = |object: ObjectId| speed_m_s(world, object) > AT_REST_M_S;
+        let moves = |object: ObjectId| rest_state(world, object) == RestState::Moving;
         let last = self.steps.last().map_or(&[][..], |last| &last.targets);
         let brought = last.iter().filter_map(|target| match target.condition {
             StepCondition::LeftIn(object, _) => Some(object),
@@ -523,12 +515,6 @@ impl ActiveInstruction {
         }
         Ok(())
     }
-}
-
-/// How fast a thing moves, m/s.
-fn speed_m_s(world: &World, object: ObjectId) -> f32 {
-    let part = world.house().objects[object].first_part;
-    world.state().part_velocity[part].linear.length()
 }
 
 /// The walkable way from the end of each leg to the end of the last one, m: from the nearest cell of one goal to the next goal.

@@ -2,6 +2,7 @@
 
 use super::active_instruction::geodesic_between_m;
 use super::planned_step::PlannedStep;
+use super::settings::InstructionFollowingV1Settings;
 use super::step_candidates::{GroupCandidate, StepCandidates};
 use dwell_scene::navigation::NavGrid;
 use dwell_scene::random::RandomStream;
@@ -82,7 +83,7 @@ pub(super) struct InstructionSampler<'a> {
     pub(super) grid: &'a NavGrid,
     /// Kinds of steps that can be asked.
     pub(super) kinds: &'a [StepKind],
-    pub(super) max_sequence_steps: usize,
+    pub(super) settings: &'a InstructionFollowingV1Settings,
 }
 
 impl InstructionSampler<'_> {
@@ -107,7 +108,15 @@ impl InstructionSampler<'_> {
     fn single(&self, stream: &mut RandomStream) -> Option<PlannedStep> {
         let kind = *stream.choose(self.kinds)?;
         let step = self.step(kind, stream)?;
-        self.pool.plan(step, &[0])
+        self.plan(step, &[0])
+    }
+
+    /// How a step is played; `None` where something would be carried too far.
+    fn plan(&self, step: InstructionStep, planned: &[usize]) -> Option<PlannedStep> {
+        let planned = self.pool.plan(step, planned)?;
+        let is_short = |most: f64| planned.transport_m(self.grid) <= most;
+        let fits = self.settings.max_transport_m.is_none_or(is_short);
+        fits.then_some(planned)
     }
 
     fn step(&self, kind: StepKind, stream: &mut RandomStream) -> Option<InstructionStep> {
@@ -123,12 +132,14 @@ impl InstructionSampler<'_> {
             }
             _ => return pool.object_step(kind, object),
         };
-        pool.transport_step(kind, object, to)
+        // What is there already need not be taken there: a sequence would ask for nothing.
+        let step = pool.transport_step(kind, object, to)?;
+        (!step.conditions[0].holds_of_things(self.scene)).then_some(step)
     }
 
     /// Steps that one hand can do one after the other: none but going between picking something up and the end.
     fn sequence(&self, stream: &mut RandomStream) -> Option<DrawnInstruction> {
-        let count = 2 + stream.below(self.max_sequence_steps - 1);
+        let count = 2 + stream.below(self.settings.max_sequence_steps as usize - 1);
         let steps: Option<Vec<PlannedStep>> = (0..count).map(|_| self.single(stream)).collect();
         let steps = steps?;
         let fits = steps.iter().enumerate().all(|(number, step)| {
@@ -196,7 +207,9 @@ impl InstructionSampler<'_> {
     }
 
     fn quantity(&self, stream: &mut RandomStream) -> Option<DrawnInstruction> {
-        let offer: &GroupCandidate = stream.choose(&self.pool.groups)?;
+        let groups = self.pool.groups.iter();
+        let groups = groups.filter(|group| group.count() <= self.settings.max_things);
+        let offer = *stream.choose(&groups.collect::<Vec<&GroupCandidate>>())?;
         let step = self.pool.group_step(offer)?;
         let group = &offer.group;
         let number = |object| group.objects.iter().position(|own| own == object);
@@ -206,7 +219,7 @@ impl InstructionSampler<'_> {
             left.swap_remove(stream.below(left.len()));
         }
         left.sort_unstable();
-        let planned = self.pool.plan(step, &left)?;
+        let planned = self.plan(step, &left)?;
         Some(DrawnInstruction::of(vec![self.in_best_order(planned)]))
     }
 

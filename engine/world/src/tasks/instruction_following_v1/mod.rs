@@ -413,7 +413,7 @@ impl InstructionFollowingV1 {
             scene: &scene,
             grid,
             kinds: &offered.collect::<Vec<StepKind>>(),
-            max_sequence_steps: self.settings.max_sequence_steps as usize,
+            settings: &self.settings,
         };
         let mut stream = key.stream();
         let form = *stream.choose(&self.settings.forms)?;

@@ -1,8 +1,10 @@
 //! Steps with the ways on which they are carried out.
 
+use super::active_instruction::geodesic_between_m;
 use crate::actions::DiscreteAction;
 use crate::tasks::navigation::NavigationGoal;
 use dwell_scene::ObjectId;
+use dwell_scene::navigation::NavGrid;
 use dwell_semantics::instruct::{InstructionStep, StepCondition};
 use std::sync::Arc;
 
@@ -35,6 +37,20 @@ pub(super) struct StepTarget {
     pub(super) legs: Vec<PlannedLeg>,
 }
 
+impl StepTarget {
+    /// The walkable way from where the thing is picked up, m; 0 where it is not taken elsewhere.
+    fn transport_m(&self, grid: &NavGrid) -> f64 {
+        let picks =
+            |leg: &&PlannedLeg| matches!(leg.end, LegEndAction::Hand(DiscreteAction::Pick, _));
+        let before = self.legs.iter().take_while(|leg| !picks(leg)).count();
+        let carried = self.legs.get(before..).unwrap_or_default();
+        let ways_m = carried
+            .windows(2)
+            .map(|pair| geodesic_between_m(&pair[0].goal, &pair[1].goal, grid));
+        ways_m.sum()
+    }
+}
+
 /// A step that can be played in the house, and how: of as many things as are needed, in the order of the plan.
 #[derive(Clone, Debug)]
 pub(super) struct PlannedStep {
@@ -47,6 +63,12 @@ impl PlannedStep {
     pub(super) fn leaves_object_held(&self) -> bool {
         let held = |target: &StepTarget| matches!(target.condition, StepCondition::Held(_));
         self.targets.iter().any(held)
+    }
+
+    /// The longest walkable way on which a thing is carried, m; 0 where nothing is.
+    pub(super) fn transport_m(&self, grid: &NavGrid) -> f64 {
+        let ways_m = self.targets.iter().map(|target| target.transport_m(grid));
+        ways_m.fold(0.0, f64::max)
     }
 
     /// Returns whether it is about a thing.

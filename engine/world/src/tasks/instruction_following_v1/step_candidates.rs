@@ -17,7 +17,7 @@ use glam::Vec3;
 use std::collections::{BTreeMap, BTreeSet};
 
 /// Things that a group leaves to do, at most: their best order is found by trying all.
-const MOST_UNDONE: usize = 4;
+pub(super) const MOST_THINGS: usize = 4;
 /// Height of a surface below the eyes from which things are put on it, m.
 const BELOW_EYES_M: f32 = 0.15;
 /// Edge of a thing that is imagined on a surface, m.
@@ -29,6 +29,17 @@ pub(super) struct GroupCandidate {
     pub(super) kind: StepKind,
     pub(super) group: ThingGroup,
     pub(super) to: Option<RoomId>,
+}
+
+impl GroupCandidate {
+    /// How many things are left to do.
+    pub(super) fn count(&self) -> usize {
+        if self.group.is_exact {
+            self.group.needed
+        } else {
+            self.group.undone.len()
+        }
+    }
 }
 
 /// What a house offers to be asked for.
@@ -228,7 +239,7 @@ impl StepCandidates {
                 let found = instruct::groups(scene, kind, &sets, to, can);
                 let short = found
                     .into_iter()
-                    .filter(|group| group.is_exact || group.undone.len() <= MOST_UNDONE);
+                    .filter(|group| group.is_exact || group.undone.len() <= MOST_THINGS);
                 self.groups
                     .extend(short.map(|group| GroupCandidate { kind, group, to }));
             }

@@ -5,6 +5,7 @@ use super::manipulation::{Manipulation, OngoingManipulation};
 use crate::actions::{DiscreteAction, StepSizes};
 use crate::expert::BlockedDoors;
 use crate::tasks::goal_cells::LargestIslandIndex;
+use crate::tasks::moved_things::{RestState, box_centre, rest_state, was_moved};
 use crate::tasks::navigation::{cells_in_reach, cells_in_reach_fraction};
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
@@ -22,10 +23,7 @@ const CARRYING: u32 = 500;
 /// From where it put a thing down in vain it does not try again, m.
 const ELSEWHERE_M: f32 = 0.25;
 
-/// It looks anew for a thing that it goes to take once this lies so far from where it lay, m; while it moves faster than this, m/s,
-/// it waits for it, for so many control steps.
-const MOVED_M: f32 = 0.1;
-const AT_REST_M_S: f32 = 0.05;
+/// Control steps for which it waits for a thing that it is to take to lie still.
 const SETTLING: u32 = 60;
 
 /// Around the box of furniture what stands in it may reach out, m.
@@ -192,7 +190,7 @@ impl RestoreExpert {
                 Manipulation::Take(object) => {
                     held == Some(object)
                         || !is_misplaced(object)
-                        || middle(world, object).distance(self.lies_at) > MOVED_M
+                        || was_moved(world, object, self.lies_at)
                 }
                 Manipulation::Put(object, _) => held != Some(object),
                 Manipulation::Open(object) | Manipulation::Close(object) => !is_misplaced(object),
@@ -255,14 +253,9 @@ impl RestoreExpert {
 
     /// Counts the steps for which something that it would take still moves; returns whether it waits for it.
     fn waits_for_rest(&mut self, world: &World, misplaced: &[Misplacement]) -> bool {
-        let state = world.state();
-        let is_held = |object: ObjectId| state.agents.iter().any(|own| own.holding == Some(object));
         let moves = misplaced.iter().any(|one| {
-            let part = world.house().objects[one.object()].first_part;
-            let speed_m_s = state.part_velocity[part].linear.length();
             matches!(one, Misplacement::Thing(_))
-                && !is_held(one.object())
-                && speed_m_s > AT_REST_M_S
+                && rest_state(world, one.object()) == RestState::Moving
         });
         self.settling = if moves { self.settling + 1 } else { 0 };
         moves && self.settling < SETTLING
@@ -366,14 +359,9 @@ impl RestoreExpert {
         }
         let (_, errand, cells) = best?;
         if let Manipulation::Take(object) = errand {
-            self.lies_at = middle(world, object);
+            self.lies_at = box_centre(world, object);
             *self.takes.entry(object).or_default() += 1;
         }
         Some(OngoingManipulation::new(errand, cells, setup))
     }
-}
-
-/// The middle of the box around a thing, m.
-fn middle(world: &World, object: ObjectId) -> Vec3 {
-    world.house().object_bounds(world.state(), object).center()
 }
