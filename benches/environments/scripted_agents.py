@@ -69,6 +69,8 @@ def main() -> None:
     parser.add_argument("--split", default="val")
     parser.add_argument("--agents", type=int, default=2)
     parser.add_argument("--settings", type=json.loads, default={}, help="of the task, as JSON")
+    parser.add_argument("--sensors", default="gps", help="names, with commas between")
+    parser.add_argument("--muted", action="store_true", help="nobody can speak")
     parser.add_argument("--random", action="store_true")
     args = parser.parse_args()
     rows = [json.loads(line) for line in args.out.open()] if args.out.exists() else []
@@ -79,8 +81,9 @@ def main() -> None:
         args.task,
         agents=args.agents,
         houses=f"split:{args.split}",
-        sensors=["gps"],
+        sensors=args.sensors.split(","),
         task_settings=args.settings,
+        world={"muted": args.muted},
     )
     with args.out.open("a") as out:
         while count < args.episodes:

@@ -5,7 +5,7 @@ from __future__ import annotations
 import copy
 import json
 import os
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from typing import TYPE_CHECKING, Any, Literal, overload
 
@@ -275,6 +275,18 @@ class House:
         if self._rooms is None:
             self._rooms = self._native.rooms()
         return copy.deepcopy(self._rooms)
+
+    def room_at(self, place: Sequence[float]) -> str | None:
+        """The name of the room around a point, m; ``None`` outside of every room.
+
+        Examples:
+            >>> import dwell
+            >>> house = dwell.House("builtin:apartment")
+            >>> room = house.rooms()[0]
+            >>> house.room_at(room["stand"]) == room["name"]
+            True
+        """
+        return self._native.room_at(arguments.point("place", place))
 
     @overload
     def describe(

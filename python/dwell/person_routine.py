@@ -8,7 +8,7 @@ own, or as one of the agents of an environment.
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Mapping
+from collections.abc import Iterable, Iterator, Mapping, Sequence
 from typing import TYPE_CHECKING, Any, NamedTuple
 
 import numpy as np
@@ -17,6 +17,7 @@ from numpy.typing import NDArray
 from dwell import ConfigError
 from dwell.arguments import integer_in_range, mapping, number_in_range, quoted, text
 from dwell.language import say
+from dwell.navigation import Walker
 
 if TYPE_CHECKING:
     from dwell.world import World
@@ -40,6 +41,8 @@ _OPEN = 0.9
 _STILL, _STILL_STEPS = 1e-4, 10
 #: Distance from the outline of a door that stopped, from which it is tried again, m.
 _ASIDE_M = 1.0
+#: Another place to try from is at least so far from the others, m.
+_ELSEWHERE_M = 0.4
 #: So many steps it points.
 _POINT_STEPS = 20
 #: Floors of two storeys are further apart than this, m.
@@ -194,35 +197,52 @@ class PersonRoutine:
 
     def _do(self, errand: Errand) -> Iterator[str]:
         """The actions of an errand."""
-        form = self._world.check(errand.sentence, agent=self._agent)["form"]["request"]
-        if not isinstance(form, list):
-            raise _GivenUpError("conditional errands are not gone about")
-        for step in form:
+        form = self._world.check(errand.sentence, agent=self._agent)["form"]
+        yield from self._steps(form["request"])
+
+    def _steps(self, steps: Iterable[Mapping[str, Any]]) -> Iterator[str]:
+        for step in steps:
             ((kind, told),) = step.items()
-            things = self._things(step)
-            if kind == "go_to":
-                yield from self._go_to_room(things[0])
-            elif kind == "bring":
-                yield from self._handle("pick", things[0]["name"])
-                yield from self._go_to_room(things[1])
-                yield "drop"
-            elif kind == "put":
-                yield from self._handle("pick", things[0]["name"])
-                where = "put_in" if told["predicate"] in ("in", "inside") else "place"
-                yield from self._handle(where, things[1]["name"])
-            elif kind == "do" and told["verb"] in _HAND:
-                name = things[0]["name"]
-                if self._is_so(told["verb"], name):
-                    continue
+            if kind == "if":
+                is_so = self._is_true(told["condition"])
+                yield from self._steps(told["then" if is_so else "otherwise"])
+            elif kind == "go_to":
+                yield from self._go_to_room(self._things(step)[0][0])
+            # What is not to be done asks for nothing.
+            elif kind != "do_not":
+                things, *places = self._things(step)
+                for thing in things[: _count(told["object"])]:
+                    yield from self._act(kind, told, thing, [place[0] for place in places])
+
+    def _act(
+        self, kind: str, told: Mapping[str, Any], thing: Mapping[str, Any], places: Sequence[Any]
+    ) -> Iterator[str]:
+        """What a step asks to be done with one thing."""
+        name = str(thing["name"])
+        if kind == "bring":
+            yield from self._handle("pick", name)
+            yield from self._go_to_room(places[0])
+            yield "drop"
+        elif kind == "put":
+            yield from self._handle("pick", name)
+            where = "put_in" if told["predicate"] in ("in", "inside") else "place"
+            yield from self._handle(where, places[0]["name"])
+        elif told["verb"] in _HAND:
+            if not self._is_so(told["verb"], name):
                 yield from self._handle(_HAND[told["verb"]], name)
                 yield from self._until_so(told["verb"], name)
-            elif kind == "do" and told["verb"] in _LOOKS:
-                yield from self._look(told["verb"], things[0])
-            else:
-                raise _GivenUpError(f"{kind} is not gone about")
+        elif told["verb"] in _LOOKS:
+            yield from self._look(told["verb"], thing)
+        else:
+            raise _GivenUpError(f"{told['verb']} is not gone about")
 
-    def _things(self, step: Mapping[str, Any]) -> list[dict[str, Any]]:
-        """The first thing of each noun phrase of a step; inner phrases only describe."""
+    def _is_true(self, claim: Mapping[str, Any]) -> bool:
+        """Whether a claim is true now; who cannot tell takes it as false."""
+        found = self._world.check(say({"claim": claim}), agent=self._agent)
+        return bool(found["answer"]["truth"])
+
+    def _things(self, step: Mapping[str, Any]) -> list[list[dict[str, Any]]]:
+        """The things of each noun phrase of a step; inner phrases only describe."""
         found = self._world.check(say({"request": [step]}), agent=self._agent)
         outer: list[dict[str, Any]] = []
         end = -1
@@ -234,7 +254,7 @@ class PersonRoutine:
             if not phrase["things"]:
                 said = found["said"][phrase["start"] : phrase["end"]]
                 raise _GivenUpError(f"there is no {said!r}")
-        return [phrase["things"][0] for phrase in outer]
+        return [phrase["things"] for phrase in outer]
 
     def _go_to_room(self, room: Mapping[str, Any]) -> Iterator[str]:
         rooms = {row["name"]: row for row in self._world.house.rooms()}
@@ -251,14 +271,16 @@ class PersonRoutine:
             yield action
         raise _GivenUpError("no way leads there in time")
 
-    def _beside(self, thing: str, gap_m: float = 0.0) -> NDArray[np.float32]:
-        """The place to stand that is nearest to a thing's outline.
+    def _beside(self, thing: str, gap_m: float = 0.0) -> list[NDArray[np.float32]]:
+        """Places to stand in a thing's room, the nearest to its outline first.
 
         With ``gap_m`` the one nearest to the person that is as far away, or further.
         """
         row = self._world.object(thing)
-        here = np.asarray(self._world.agents()[self._agent]["position"])
-        places = self._world.navigation().points(here.tolist())
+        agent = self._world.agents()[self._agent]
+        here, body = np.asarray(agent["position"]), agent["body"]
+        walker = Walker(radius_m=body["radius_m"], height_m=body["height_m"], doors="open")
+        places = self._world.navigation(walker).points(here.tolist())
         middle, half = np.asarray(row["center"]), 0.5 * np.asarray(row["size"])
         away = np.maximum(np.abs(places - middle) - half, 0.0)[:, [0, 2]]
         cost = np.hypot(*away.T) + 0.1 * np.hypot(*(places - middle)[:, [0, 2]].T)
@@ -266,17 +288,26 @@ class PersonRoutine:
             way = np.hypot(*(places - here)[:, [0, 2]].T)
             cost = np.where(np.hypot(*away.T) >= gap_m, way, np.inf)
         cost = np.where(np.abs(places[:, 1] - (middle - half)[1]) > _STOREY_M, np.inf, cost)
-        if not len(places) or not np.isfinite(cost).any():
+        found: list[NDArray[np.float32]] = []
+        room_at = self._world.house.room_at
+        for k in np.argsort(cost, kind="stable")[: np.isfinite(cost).sum()]:
+            # From another room a wall may be between.
+            if row["room"] in (None, room_at(places[k].tolist())) and all(
+                np.hypot(*(places[k] - one)[[0, 2]]) > _ELSEWHERE_M for one in found
+            ):
+                found.append(places[k])
+            if len(found) == _TRIES:
+                break
+        if not found:
             raise _GivenUpError(f"nobody can stand beside {thing}")
-        best: NDArray[np.float32] = places[int(cost.argmin())]
-        return best
+        return found
 
     def _look(self, verb: str, thing: Mapping[str, Any]) -> Iterator[str]:
         """Looks at a thing; first it goes there where the verb says so."""
         name = str(thing["name"])
         middle = self._world.object(name)["center"]
         if verb in ("find", "approach"):
-            yield from self._walk(self._beside(name))
+            yield from self._walk(self._beside(name)[0])
         if self._is_person:
             self._world.set_gesture(self._agent, look_at=middle)
         for _ in range(_LOOK_STEPS):
@@ -290,9 +321,9 @@ class PersonRoutine:
                 yield "wait"
 
     def _handle(self, action: str, thing: str) -> Iterator[str]:
-        """Goes to a thing, looks at it, and lets the hand act."""
-        yield from self._walk(self._beside(thing))
-        for _ in range(_TRIES):
+        """Goes to a thing, looks at it, and lets the hand act; in vain it tries from elsewhere."""
+        for place in self._beside(thing):
+            yield from self._walk(place)
             yield from self._look("face", {"name": thing})
             before = self._facts(thing)
             yield action
@@ -327,7 +358,7 @@ class PersonRoutine:
             if self._is_so(verb, thing):
                 return
             # A door that swings may have met the body: it steps back.
-            yield from self._walk(self._beside(thing, _ASIDE_M))
+            yield from self._walk(self._beside(thing, _ASIDE_M)[0])
             yield from self._look("face", {"name": thing})
             yield _HAND[verb]
         raise _GivenUpError(f"{thing} did not {verb}: something is in its way")
@@ -339,6 +370,15 @@ class PersonRoutine:
         openness = row["openness"]
         opened = None if openness is None else round(float(np.max(openness)), 1)
         return (opened, tuple(held), row["on"])
+
+
+def _count(phrase: Mapping[str, Any]) -> int | None:
+    """How many things a noun phrase asks for; ``None``: all."""
+    quantifier = phrase.get("described", {}).get("quantifier")
+    if isinstance(quantifier, Mapping):
+        (number,) = quantifier.values()
+        return int(number)
+    return None if quantifier == "every" else 1
 
 
 def _hour(at: str, clock: object) -> float:

@@ -70,6 +70,36 @@ def test_of_errands_that_are_due_at_once_the_last_one_counts() -> None:
     )
 
 
+@pytest.mark.parametrize(
+    ("sentence", "claims"),
+    [
+        ("Bring the laptop to the kitchen.", ["The laptop is in the kitchen."]),
+        ("Put the laptop on the bed.", ["The laptop is on the bed."]),
+        (
+            "If the television is on, switch it off, otherwise go to the kitchen.",
+            ["The television is off.", "You are not in the kitchen."],
+        ),
+        (
+            "If the television is off, go to the bathroom, otherwise go to the kitchen.",
+            ["You are in the kitchen.", "The television is on."],
+        ),
+        ("Do not switch the television off, and go to the kitchen.", ["The television is on."]),
+    ],
+)
+def test_an_errand_leaves_the_house_as_it_says(sentence: str, claims: list[str]) -> None:
+    world = home()
+    assert not all(world.check(claim, agent=0)["answer"]["truth"] for claim in claims[:1]) or (
+        "not" in sentence
+    )
+    routine = PersonRoutine(world, {"08:00": sentence}, start="08:00")
+    played(routine, world, 1)
+    assert [report.failure for report in routine.reports] == [""]
+    for _ in range(40):
+        world.do("wait")
+    for claim in claims:
+        assert world.check(claim, agent=0)["answer"]["truth"], claim
+
+
 def test_what_cannot_be_done_is_reported() -> None:
     world = home()
     day = {"08:00": "Find the piano.", "08:01": "Go to the bathroom."}

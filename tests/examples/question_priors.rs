@@ -60,7 +60,8 @@ fn draw(
             ..EnvConfig::default()
         };
         let mut env = Env::new(Engines::new(Arc::new(opened)), &config)?;
-        for seed in 0..each {
+        // Others in each house: kind and answer are drawn by the seed.
+        for seed in house * each..(house + 1) * each {
             if let Err(error) = env.reset(seed) {
                 println!("{error}");
                 break;
