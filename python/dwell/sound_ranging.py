@@ -56,6 +56,8 @@ _SILENT, _SILENT_M = 1.2, 2.2
 #: That is known of sounds that have at least this share of the frequencies; of others, whose
 #: correlations have many peaks, arrivals are known to this distance, m.
 _BROAD, _FEW_REACH_M = 0.12, 3.5
+#: Places within a cell, m from its middle.
+_WITHIN_M = np.array([-0.12, -0.06, 0.0, 0.06, 0.12])
 #: Likelihood of a peak, by how often it is above what is everywhere.
 _SLOPE, _FLOOR, _CAP = 0.75, 1.5, 5.0
 #: Sounds of a few tones, and their frequencies, Hz.
@@ -201,7 +203,9 @@ class BroadSound:
         norm = np.sqrt((heard + 1e-16) * (dry + 1e-6 * dry.max() + 1e-16))
         sounds = self._band & (dry > _LEAST * dry.max())
         weight = np.where(sounds, 1.0 / norm, 0.0)
-        told = np.zeros(len(cells))
+        # A cell is wider than a peak: who is in it may be a little nearer or further away.
+        within = np.rint(_WITHIN_M / _SOUND_M_S * self._rate_hz)
+        told = np.zeros((len(within), len(cells)))
         total = np.zeros((2, self._lags))
         wide = max(1, round(_PEAK_S * self._rate_hz))
         at = (np.arange(self._lags) - self._lags) % self._size
@@ -213,8 +217,10 @@ class BroadSound:
             of_cells = _Geometry.of(cells, pose)
             for ear, side in ((0, -0.5), (1, 0.5)):
                 delay_s = of_cells.distance_m / _SOUND_M_S + side * of_cells.itd_s
-                where = np.clip(np.rint(delay_s * self._rate_hz), 0, self._lags - 1)
+                where = np.rint(delay_s * self._rate_hz)[None, :] + within[:, None]
+                where = np.clip(where, 0, self._lags - 1)
                 told += lags[ear, where.astype(np.int64)]
+        told = told.max(axis=0)
         noise = 1.2 * float(np.median(np.abs(total))) * np.sqrt(2.0) + 1e-12
         envelope = np.hypot(*total)
         shift = round(_EARLIER_S * self._rate_hz)

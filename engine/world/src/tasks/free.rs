@@ -95,7 +95,7 @@ impl FreeTask {
             }
             return Ok((start.position, start.yaw_rad));
         }
-        let start = sample_start(world, placed, (&grid, body), key.child("start"));
+        let start = sample_start(world, placed, (&grid, body, None), key.child("start"));
         let Some(cell) = start else {
             let why = "nobody of the agent's size can stand anywhere";
             return Err(unplayable(why.to_owned()));

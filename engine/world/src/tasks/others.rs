@@ -6,10 +6,10 @@ use crate::actions::DiscreteAction;
 use crate::error::WorldError;
 use crate::expert::ShortestPathFollower;
 use crate::world::World;
-use dwell_scene::AgentId;
 use dwell_scene::bvh::{Ray, RayMask};
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
+use dwell_scene::{AgentId, LevelId};
 use glam::Vec3;
 use serde::de::DeserializeOwned;
 use serde::{Deserialize, Serialize};
@@ -32,9 +32,22 @@ pub(super) struct PatrolState {
     places: u64,
     /// The present one, m.
     goal: Option<[f32; 3]>,
+    /// The storey that it keeps to.
+    storey: Option<LevelId>,
 }
 
 impl Patrol {
+    /// A walk that keeps to a storey, or with `None` goes anywhere.
+    pub(super) fn on_storey(storey: Option<LevelId>) -> Self {
+        Self {
+            way: None,
+            memory: PatrolState {
+                storey,
+                ..PatrolState::default()
+            },
+        }
+    }
+
     /// Returns the next step; `wait` where the next place has just been chosen.
     pub(super) fn next_action(
         &mut self,
@@ -48,12 +61,16 @@ impl Patrol {
         }
         let here = position(world, setup.agent);
         let place = key.child("tour").child(self.memory.places);
+        let storey = self.memory.storey;
         let goal = grid.sample(place, |cell| {
-            grid.island(cell) == Some(0) && grid.position(cell).distance(here) >= NEXT_PLACE_M
+            grid.island(cell) == Some(0)
+                && (storey.is_none() || grid.level(cell) == storey)
+                && grid.position(cell).distance(here) >= NEXT_PLACE_M
         });
         self.memory = PatrolState {
             places: self.memory.places + 1,
             goal: goal.map(|cell| grid.position(cell).to_array()),
+            storey,
         };
         self.way = goal.map(|cell| follower_to(setup, grid, &[cell]));
         DiscreteAction::Wait
@@ -94,7 +111,7 @@ pub(super) fn restored_episode<M: DeserializeOwned>(
     Ok((memory, Patrol::restored(tour, setup, &grid)))
 }
 
-/// Opens all doors, and places an agent anywhere on the largest piece of floor, looking anywhere. Returns where, m, and its heading, rad.
+/// Opens all doors, and places an agent anywhere on the largest piece of floor, or on one storey of it, looking anywhere. Returns where, m, and its heading, rad.
 ///
 /// # Errors
 /// [`WorldError::TaskNotPlayable`] where there is no room for it.
@@ -102,12 +119,12 @@ pub(super) fn place_anywhere(
     world: &mut World,
     placed: &[AgentId],
     (setup, task): (&TaskSetup, &'static str),
-    key: RandomKey,
+    (storey, key): (Option<LevelId>, RandomKey),
 ) -> Result<(Vec3, f32), WorldError> {
     let body = setup.body(world, task)?;
     let grid = world.engines().nav_grid(&body)?;
     door_leaves::open_all(world, &grid)?;
-    let start = sample_start(world, placed, (&grid, &body), key.child("start"));
+    let start = sample_start(world, placed, (&grid, &body, storey), key.child("start"));
     let Some(cell) = start else {
         return Err(WorldError::TaskNotPlayable {
             task,

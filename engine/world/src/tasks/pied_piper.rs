@@ -17,7 +17,7 @@ use crate::schema;
 use crate::sound::{SoundName, SoundPlace};
 use crate::world::World;
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentId, Pose};
+use dwell_scene::{AgentId, LevelId, Pose};
 use dwell_semantics::vocabulary;
 use schemars::JsonSchema;
 use serde::{Deserialize, Serialize};
@@ -72,6 +72,9 @@ struct PiedPiperSettings {
     follow_distance_m: f32,
     /// The least share of the second half of the steps near the right one that is success, above 0 to 1; default 0.5.
     success_share: f64,
+    /// Whether agents begin on any storey and leaders walk to others; by default all begin on one, drawn by its floor, and leaders keep
+    /// to it.
+    across_storeys: bool,
     /// Steps of an episode, 2 to 100,000; default 600.
     steps: u64,
 }
@@ -84,6 +87,7 @@ impl Default for PiedPiperSettings {
             level_db: None,
             follow_distance_m: 2.0,
             success_share: 0.5,
+            across_storeys: false,
             steps: 600,
         }
     }
@@ -214,6 +218,17 @@ impl PiedPiperTask {
         position(world, self.setup.agent).distance(position(world, target))
     }
 
+    /// A storey of the largest piece of floor, as probable as it is large; `None` where nobody can stand.
+    fn storey(world: &World, key: RandomKey) -> Result<Option<LevelId>, WorldError> {
+        // By the floor of one of them, for all alike.
+        let Some(first) = world.state().agents.iter().next() else {
+            return Ok(None);
+        };
+        let grid = world.engines().nav_grid(&first.body)?;
+        let cell = grid.sample(key, |cell| grid.island(cell) == Some(0));
+        Ok(cell.and_then(|cell| grid.level(cell)))
+    }
+
     /// Steps of the second half so far.
     fn second_half(&self, steps: u64) -> u64 {
         steps.saturating_sub(self.settings.steps / 2)
@@ -240,9 +255,15 @@ impl Task for PiedPiperTask {
     ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
         let leaders = self.settings.leaders(world)?;
-        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), key)?;
-        // Of the episode, not of the agent: all know the same sounds.
+        // Of the episode, not of the agent: all know the same sounds and storey.
         let shared = world.episode_key().child("pied_piper");
+        let storey = if self.settings.across_storeys {
+            None
+        } else {
+            Self::storey(world, shared.child("storey"))?
+        };
+        let (position, yaw_rad) =
+            place_anywhere(world, placed, (&self.setup, NAME), (storey, key))?;
         let mut sounds = self.settings.sounds.clone();
         shared.child("sounds").stream().shuffle(&mut sounds);
         // "The radio" is the one who leads, and not a thing that plays the same, while there are other sounds.
@@ -264,7 +285,7 @@ impl Task for PiedPiperTask {
             target,
             leads,
             key,
-            tour: Patrol::default(),
+            tour: Patrol::on_storey(storey),
             memory: Progress {
                 distance_m: self.distance_m(world, target),
                 ..Progress::default()

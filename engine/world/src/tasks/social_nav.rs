@@ -214,7 +214,7 @@ impl Task for SocialNavTask {
                 allowed: format!("below the number of agents, {count}"),
             });
         }
-        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), key)?;
+        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), (None, key))?;
         let text = if self.is_person() {
             PERSON_INSTRUCTION
         } else {

@@ -378,7 +378,7 @@ impl Task for SoundLocalization {
         for k in 0..STARTS {
             interrupt::unwind_if_cancelled();
             let key = key.child("start").child(k);
-            let Some(start) = sample_start(world, placed, (&grid, &body), key) else {
+            let Some(start) = sample_start(world, placed, (&grid, &body, None), key) else {
                 break;
             };
             let (position, yaw_rad) = (grid.position(start), random_yaw_rad(key));

@@ -4,21 +4,25 @@ use super::door_leaves::DoorLeaves;
 use crate::world::World;
 use dwell_scene::navigation::{NavCell, NavGrid};
 use dwell_scene::random::RandomKey;
-use dwell_scene::{AgentBody, AgentId};
+use dwell_scene::{AgentBody, AgentId, LevelId};
 use glam::Vec3;
 
 /// Between the bodies of two agents at their starts, m.
 const APART_M: f32 = 0.1;
 
-/// A start anywhere on the largest island of a grid, drawn from `key`: clear of the leaves of doors and of those who have their starts.
+/// A start anywhere on the largest island of a grid, or on one storey of it, drawn from `key`: clear of the leaves of doors and of those who have their starts.
 pub(super) fn sample_start(
     world: &World,
     placed: &[AgentId],
-    (grid, body): (&NavGrid, &AgentBody),
+    (grid, body, storey): (&NavGrid, &AgentBody, Option<LevelId>),
     key: RandomKey,
 ) -> Option<NavCell> {
     let leaves = DoorLeaves::of(world, grid);
-    let allowed = |cell: NavCell| grid.island(cell) == Some(0) && !leaves.is_blocked(grid, cell);
+    let allowed = |cell: NavCell| {
+        grid.island(cell) == Some(0)
+            && (storey.is_none() || grid.level(cell) == storey)
+            && !leaves.is_blocked(grid, cell)
+    };
     FreeStartCells::excluding_agents(world, placed, body).sample(grid, key, allowed)
 }
 

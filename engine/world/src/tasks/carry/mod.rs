@@ -181,7 +181,7 @@ impl Task for CarryTask {
                 world.place_agent(agent, feet, yaw_rad)?;
                 (feet, yaw_rad)
             }
-            None => place_anywhere(world, placed, (&self.setup, NAME), key)?,
+            None => place_anywhere(world, placed, (&self.setup, NAME), (None, key))?,
         };
         let goal = *way.last().unwrap_or(&formation.start);
         let middle = goal.transform_point(formation.middle);

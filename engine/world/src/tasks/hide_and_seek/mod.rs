@@ -249,7 +249,7 @@ impl Task for HideAndSeekTask {
     ) -> Result<Episode, WorldError> {
         let agent = self.setup.agent;
         let teams = Teams::of(&self.settings, world)?;
-        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), key)?;
+        let (position, yaw_rad) = place_anywhere(world, placed, (&self.setup, NAME), (None, key))?;
         let seeks = self.seeks(&teams);
         let text = if seeks {
             SEEKER_INSTRUCTION
