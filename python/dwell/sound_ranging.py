@@ -29,8 +29,8 @@ from typing import NamedTuple, Protocol
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import _native
 from dwell.ears_policy import woodworth_itd_s
+from dwell.sounds import synthesize
 
 Array = NDArray[np.float64]
 
@@ -131,8 +131,7 @@ def known_sounds(named: str, rate_hz: int, samples: int) -> list[KnownSound]:
 
 def dry_signal(named: str, rate_hz: int) -> Array:
     """A period of a signal of the library."""
-    (period_s,) = (row["loop_s"] for row in _native.signals() if row["name"] == named)
-    return np.asarray(_native.synthesize(named, rate_hz, round(period_s * rate_hz)), np.float64)
+    return synthesize(named, rate_hz=rate_hz).astype(np.float64)
 
 
 def _piece(dry: Array, start: int, count: int) -> Array:
@@ -232,7 +231,9 @@ class BroadSound:
         loudest = float(envelope.max())
         ratio = told / (noise + _SHADOW * np.maximum(earlier - 2.0 * noise, 0.0))
         ratio[(away_m < _NEAR_M) & (told < _DIRECT * loudest)] = 0.0
-        found: Array = _SLOPE * np.clip(ratio - _FLOOR, 0.0, _CAP)
+        # Not cut off: of places that all are far above the noise the best one stays the best.
+        ratio *= min(1.0, (_FLOOR + _CAP) / max(float(ratio.max()), 1e-9))
+        found: Array = _SLOPE * np.maximum(ratio - _FLOOR, 0.0)
         if sounds.sum() < _BROAD * self._band.sum():
             return np.where(away_m < _FEW_REACH_M, found, 0.0)
         # A source next to the ears would be heard.

@@ -203,3 +203,35 @@ def _chunks(name: str, file: bytes) -> dict[bytes, bytes]:
 def signals() -> list[dict[str, Any]]:
     """The built-in signals: name, description, loop_s, usual_level_db (at 1 m), level_source."""
     return _native.signals()
+
+
+def synthesize(
+    signal: str, *, rate_hz: int = 16_000, seconds: float | None = None
+) -> NDArray[np.float32]:
+    """A built-in signal from its start, without any room: what its source emits.
+
+    Args:
+        signal: Its name, as :func:`signals` lists it.
+        rate_hz: Samples a second.
+        seconds: How long; by default one period, after which it begins again.
+
+    Returns:
+        Shape (samples,), 1 Pa RMS over a period.
+
+    Raises:
+        ConfigError: There is no such signal, or a number is out of range.
+
+    Examples:
+        >>> import dwell
+        >>> dwell.sounds.synthesize("phone", rate_hz=8000).shape
+        (48000,)
+    """
+    name = arguments.text("signal", signal)
+    rate = integer_in_range("rate_hz", rate_hz, low=1)
+    if seconds is None:
+        periods = {row["name"]: float(row["loop_s"]) for row in signals()}
+        # Of an unknown name the engine says which there are.
+        seconds = periods.get(name, 0.0)
+    else:
+        seconds = arguments.number_in_range("seconds", seconds, 0.0, 3600.0)
+    return _native.synthesize(name, rate, round(seconds * rate))

@@ -12,7 +12,7 @@ import pytest
 
 import dwell
 from dwell.envs import DwellEnv
-from dwell.sounds import read_wav, write_wav
+from dwell.sounds import read_wav, signals, synthesize, write_wav
 
 SOUND = np.random.default_rng(0).normal(0.0, 3.0, (3, 401)).astype(np.float32)
 
@@ -235,3 +235,15 @@ def test_sixteen_sources_are_heard_and_more_are_told(caplog: pytest.LogCaptureFi
     assert "more sources than the sound preset follows" not in caplog.text
     assert level_db(17) == pytest.approx(one + 20.0 * np.log10(16.0), abs=0.2)
     assert "more sources than the sound preset follows" in caplog.text
+
+
+def test_a_signal_begins_again_after_its_period() -> None:
+    for row in signals():
+        period = synthesize(row["name"], rate_hz=8000)
+        assert period.shape == (round(row["loop_s"] * 8000),)
+        assert abs(float(np.sqrt(np.mean(period.astype(np.float64) ** 2))) - 1.0) < 0.02
+        more = synthesize(row["name"], rate_hz=8000, seconds=row["loop_s"] + 0.5)
+        assert np.array_equal(more, np.concatenate([period, period[:4000]]))
+    for wrong in ({"signal": "gong"}, {"rate_hz": 0}, {"seconds": -1.0}, {"seconds": np.nan}):
+        with pytest.raises(dwell.ConfigError):
+            synthesize(**{"signal": "phone", **wrong})

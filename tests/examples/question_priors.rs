@@ -13,9 +13,17 @@ use std::collections::{BTreeMap, BTreeSet};
 use std::error::Error;
 use std::sync::Arc;
 
-/// Share of the most frequent answer from which a text is guessable, and the least number of houses that were asked for that.
+/// Share of the most frequent answer from which a text is guessable; by Wilson's interval of 95 % it must be more than half, too, so that
+/// chance makes no text of a few houses guessable. A house counts once.
 const GUESSABLE: f64 = 0.7;
-const LEAST_HOUSES: usize = 4;
+const Z: f64 = 1.96;
+
+/// The lower end of Wilson's interval (E. B. Wilson, 1927) of a share of `total`.
+fn lower_bound(share: f64, total: f64) -> f64 {
+    let z2 = Z * Z / total;
+    let spread = Z * (share * (1.0 - share) / total + z2 / (4.0 * total)).sqrt();
+    (share + z2 / 2.0 - spread) / (1.0 + z2)
+}
 
 /// A question that was drawn.
 struct Drawn {
@@ -89,12 +97,12 @@ fn main() -> Result<(), Box<dyn Error>> {
     let (train_houses, val_houses, each) = (number(0, 40)?, number(1, 10)?, number(2, 40)?);
     let train = draw(0..=7, train_houses, each as u64)?;
     let val = draw(8..=8, val_houses, each as u64)?;
-    let mut by_text: BTreeMap<&str, (Counts, BTreeSet<u64>)> = BTreeMap::new();
+    let mut by_text: BTreeMap<&str, (Counts, BTreeMap<u64, usize>)> = BTreeMap::new();
     let mut by_kind: BTreeMap<&str, Counts> = BTreeMap::new();
     for drawn in &train {
         let (counts, houses) = by_text.entry(&drawn.text).or_default();
         *counts.entry(drawn.answer).or_default() += 1;
-        houses.insert(drawn.house);
+        houses.entry(drawn.house).or_insert(drawn.answer);
         *by_kind
             .entry(drawn.kind)
             .or_default()
@@ -143,8 +151,13 @@ fn main() -> Result<(), Box<dyn Error>> {
     if let Some(path) = arguments.get(3) {
         let known = std::fs::read_to_string(path).unwrap_or_default();
         let mut texts: BTreeSet<&str> = known.lines().collect();
-        let guessable = by_text.iter().filter(|(_, (counts, houses))| {
-            houses.len() >= LEAST_HOUSES && best(counts).1 >= GUESSABLE
+        let guessable = by_text.iter().filter(|(_, (_, by_house))| {
+            let mut counts = Counts::new();
+            for answer in by_house.values() {
+                *counts.entry(*answer).or_default() += 1;
+            }
+            let share = best(&counts).1;
+            share >= GUESSABLE && lower_bound(share, by_house.len() as f64) > 0.5
         });
         texts.extend(guessable.map(|(text, _)| *text));
         let lines: Vec<&str> = texts.into_iter().collect();

@@ -10,9 +10,9 @@ from pathlib import Path
 import numpy as np
 from numpy.typing import NDArray
 
-from dwell import ConfigError, DwellError, MeasuredDataError, _native
+from dwell import ConfigError, DwellError, MeasuredDataError
 from dwell.arguments import quoted
-from dwell.sounds import read_wav
+from dwell.sounds import read_wav, signals, synthesize
 
 #: Signals of a household that come from one place; those for measuring are no classes.
 SIGNALS = (
@@ -74,7 +74,7 @@ class Pool:
         """
         self._folder: Path | None = None
         if sounds in ("signals", "household"):
-            levels = {row["name"]: float(row["usual_level_db"]) for row in _native.signals()}
+            levels = {row["name"]: float(row["usual_level_db"]) for row in signals()}
             of_houses = _OF_HOUSES if sounds == "household" else ()
             self.classes = sorted({*SIGNALS, *of_houses})
             self.sounds = [Sound(name, k, levels[name]) for k, name in enumerate(self.classes)]
@@ -198,8 +198,7 @@ class Pool:
 @functools.lru_cache(64)
 def _loop(signal: str, rate_hz: int) -> NDArray[np.float64]:
     """A signal's loop."""
-    loop_s = next(row["loop_s"] for row in _native.signals() if row["name"] == signal)
-    return _native.synthesize(signal, rate_hz, round(loop_s * rate_hz)).astype(np.float64)
+    return synthesize(signal, rate_hz=rate_hz).astype(np.float64)
 
 
 def _faded(sound: NDArray[np.float64], rate_hz: int) -> NDArray[np.float64]:
