@@ -70,6 +70,7 @@ def main() -> None:
     parser.add_argument("--agents", type=int, default=2)
     parser.add_argument("--settings", type=json.loads, default={}, help="of the task, as JSON")
     parser.add_argument("--sensors", default="gps", help="names, with commas between")
+    parser.add_argument("--voice", action="store_true", help="the first one can speak")
     parser.add_argument("--muted", action="store_true", help="nobody can speak")
     parser.add_argument("--random", action="store_true")
     args = parser.parse_args()
@@ -79,7 +80,7 @@ def main() -> None:
     seed = args.first
     env = parallel_env(
         args.task,
-        agents=args.agents,
+        agents={f"agent_{k}": {"voice": args.voice and k == 0} for k in range(args.agents)},
         houses=f"split:{args.split}",
         sensors=args.sensors.split(","),
         task_settings=args.settings,
