@@ -281,7 +281,7 @@ class House:
 
         Examples:
             >>> import dwell
-            >>> house = dwell.House("builtin:apartment")
+            >>> house = dwell.House.open("builtin:apartment")
             >>> room = house.rooms()[0]
             >>> house.room_at(room["stand"]) == room["name"]
             True
